@@ -33,7 +33,6 @@ def approach_axis(
     is elsewhere, as at the fingertips.
 
     Args:
-        scene: What knows the shapes of its links.
         state: Positions of the whole robot in description order, with the hand open.
     """
     gripper = description.gripper

@@ -24,9 +24,7 @@ class Cell(Holding):
     """Everything that steps work with: robot, planning, physics, and the state of the scene.
 
     Attributes:
-        runner: Carries out steps that the current one is made of.
         allowed: Pairs of bodies that `allow_collisions` around the step allows, outermost first.
-        faults: The faults that were injected, in words, and the line of each in the file.
     """
 
     planner: MotionPlanner

@@ -28,8 +28,6 @@ class Approach:
     """A straight motion of the TCP to where something is grasped or put down.
 
     Attributes:
-        before: The goal at which the approach begins.
-        at: The goal at which the approach ends.
         number: The number of the grasp or turn, from 0; approaches of several lengths share it.
     """
 
@@ -50,9 +48,7 @@ class GraspSearch:
     """How approaches are tried.
 
     Attributes:
-        group: The name of the planning group.
         start: The whole robot before, description order.
-        options: The options of the straight approach.
         may_end: Whether it may end at these positions of the whole robot.
         then: Whether what follows can be carried out from there; preferred, not required.
     """
@@ -69,7 +65,6 @@ class ChosenApproach:
     """The approach that is taken.
 
     Attributes:
-        approach: Its ends, and the number of its grasp.
         begin: Joint positions from which the arm can follow it, in group order, by joint; None
             where no such positions are known.
     """

@@ -106,10 +106,6 @@ def grasp_depth(cell: Cell, height: float, width: float) -> float:
     The palm stays above the top, and the fingertips above the bottom from where they are open to
     where they close on the object, where both are possible. A palm that is a pad itself, next to a
     single jaw, touches the object anyway.
-
-    Args:
-        height: The height of the object [m].
-        width: Its width between the fingers [m].
     """
     gripper, approach = cell.gripper, gripper_axes(cell)[0]
 
@@ -339,7 +335,6 @@ def _equal_turns(geometry: Geometry, vertical: int, fits: Sequence[bool]) -> lis
     """Turns about the vertical after which a grasp is as good as before, least first [rad].
 
     Args:
-        geometry: The shape to grasp.
         fits: Whether its narrow level side fits between the pads, then its wide one.
     """
     upright = isinstance(geometry, Cylinder | Capsule) and vertical == 2

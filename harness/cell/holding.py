@@ -24,7 +24,6 @@ class Holding(SceneState):
     """The scene, and what is attached to links of the robot.
 
     Attributes:
-        attachments: What was attached to which link, and when.
         held: Objects that grippers have closed on, in the order of their grasps.
     """
 
@@ -89,9 +88,6 @@ class Holding(SceneState):
         """Attach an object that the gripper has closed on; it may be in another gripper, too.
 
         The planner carries it with the arm that grasped it last.
-
-        Args:
-            weld: Whether the physics fixes it to the hand.
 
         Raises:
             StepFailed: INVALID_OBJECT_NAME, where this gripper holds it already.

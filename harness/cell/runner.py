@@ -17,7 +17,6 @@ class RunEndedError(Exception):
 
     Attributes:
         failure: The failure of the innermost step.
-        summary: The summary of that step.
     """
 
     def __init__(self, failure: StepFailed, summary: str) -> None:

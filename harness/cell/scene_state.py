@@ -68,9 +68,7 @@ class SceneState:
 
     Attributes:
         step: The step that is carried out; None before the first.
-        presence: When each object was in the scene.
         beliefs: Where objects of the planning scene alone stood, by name.
-        notes: What the step leaves in its record.
         expected: T_world_object of objects that plans take to be elsewhere than they are.
         unpadded: Pairs of bodies without padding, of each gripper that is about to grasp.
         waiting: Motions that begin together once all of them are planned; None: each begins at

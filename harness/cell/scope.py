@@ -125,16 +125,12 @@ class Scope:
     """Names that a step or an expectation may use.
 
     Attributes:
-        description: The description of the robot.
         objects: Every object known so far, by name, whether it is in the scene now or not.
         present: Objects in the scene at this point of the file, as far as the file says.
-        attached: Objects attached at this point.
         added: Objects that steps added and nothing removed.
-        cameras: Every camera, by name.
         requested_time: Simulated time that steps have requested as a number [s].
         requested_pictures: The number of camera pictures that steps have requested; a picture
             beyond HD counts by its pixels.
-        problems: The problems, to which mistakes are added.
         link_pose: T_world_link at joint positions in description order.
         gravity: The gravitational acceleration of the world [m/s^2].
     """

@@ -25,7 +25,6 @@ def is_antipodal(first: FloatArray, second: FloatArray, thickness: float) -> Boo
     Args:
         first: Contact point (world) [m] and normal force on the object [N] of a side, (N, 6).
         second: The same of the other side.
-        thickness: The thickness of the object's thinnest part [m].
     """
     is_thick = distance_pressed(first, second) + GIVE >= LEAST_SHARE * thickness
     return is_opposite(first, second) & is_thick

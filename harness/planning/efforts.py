@@ -24,9 +24,7 @@ class InverseDynamics:
     """Inverse dynamics of a group's joints, the other joints at rest; friction is neglected.
 
     Attributes:
-        joint_names: The joints of the group.
         limits: The effort limits [N m or N], shape (dof,); inf where there is none.
-        payloads: The attached objects with a mass.
     """
 
     joint_names: tuple[str, ...]

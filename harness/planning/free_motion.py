@@ -72,7 +72,6 @@ def find_motion(
     straight effort is less than the candidate's are then searched with a small budget.
 
     Args:
-        goals: Free group positions, nearest first.
         explanation: The explanation of the goals; the plan contains it with the chosen solution.
 
     Raises:

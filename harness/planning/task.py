@@ -38,9 +38,6 @@ class PlanningTask:
     Attributes:
         space: The group, the rest of the robot where it is.
         checker: The checker of states and edges, with this motion's margins.
-        start: The start positions of the group.
-        limits: The limits of the joints, scaled.
-        options: The options of the planning call.
         held: Path constraints; None where there are none.
     """
 

@@ -144,8 +144,6 @@ class MeshShapes:
     """What stands for a mesh of a body.
 
     Attributes:
-        body: The link or the object.
-        file: The name of the mesh file.
         parts: The number of convex parts; 0 for the triangles.
         excess: How far they reach beyond the mesh at most [m].
     """

@@ -32,15 +32,9 @@ class RobotPart:
 
     Attributes:
         name: Its name in the scenario (the variant, if it has variants).
-        facts: The content of its robot.yaml.
-        urdf: Its links and joints, with the limits of robot.yaml.
         srdf: The groups of the gripper.
-        source: Its name in messages.
-        notes: Notes on ignored elements and assumptions.
-        rejected_grippers: Why parts that look like grippers are none, a sentence each.
         arms: The arms of a robot with several; the facts are those of the first.
         default_arm: The arm that the scenario states; empty where it states none.
-        wrench_sensors: The sensors of force and torque in its file of another format, by name.
     """
 
     name: str
@@ -60,8 +54,6 @@ class PartArm:
     """One of several arms of a part.
 
     Attributes:
-        group: The name of its planning group.
-        tcp_link: The link whose pose is the arm's TCP.
         base_link: The first link of the arm.
         gripper: What is known of its gripper; None for an arm without one.
     """
@@ -78,7 +70,6 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     Args:
         arm: The arm; None for a gripper without an arm.
         gripper: The gripper; None for an arm without one, or with an integrated one.
-        base: T_world_base of the first link.
 
     Raises:
         RobotError: The arm has no flange, or names clash between arm and gripper.

@@ -55,7 +55,6 @@ class Decomposer(Plugin, ABC):
 
         Args:
             triangles: Corners [m], shape (M, 3, 3); they need not be connected or closed.
-            is_hull: Whether the hull is the only part in any case.
 
         Raises:
             ModuleNotFoundError: A package is not installed.

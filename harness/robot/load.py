@@ -114,8 +114,6 @@ def load_robot(
     """The robot of a scenario, composed and with its options applied.
 
     Args:
-        spec: The `robot:` of the scenario.
-        base_dir: The scenario's folder, to which paths in `model` and `gripper` are relative.
         collision: How meshes collide whose link the robot's `collision` does not have.
 
     Raises:

@@ -63,13 +63,10 @@ class Joint(LinkJoint):
     """A joint and its limits; rad, rad/s, N m for turning joints, m, m/s, N for prismatic ones.
 
     Attributes:
-        lower: Lower position limit; -inf when continuous.
         upper: Upper position limit; inf when continuous.
-        velocity: Velocity limit; inf when the description has none.
         is_velocity_assumed: Whether no file has the velocity limit.
         acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
         effort: Effort limit from a data sheet.
-        effort_source: Source of the effort limit.
         mimic: The relation to the joint that this joint mimics; None for a driven joint.
         command_interfaces: Its command interfaces in ros2_control; the program commands efforts.
     """

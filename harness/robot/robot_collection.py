@@ -14,11 +14,7 @@ __all__ = ["RobotCollection"]
 
 
 class RobotCollection(Plugin):
-    """A folder with a folder for each robot or gripper, as robots/ of this program.
-
-    Attributes:
-        folder: Where the folders with their robot.yaml are.
-    """
+    """A folder with a folder for each robot or gripper, as robots/ of this program."""
 
     plugin_kind: ClassVar[str] = "robot"
     folder: ClassVar[Path]

@@ -33,7 +33,6 @@ class RobotFormat(Plugin, ABC):
         """Read a robot, and infer what its robot.yaml would say.
 
         Args:
-            spec: The `robot:` of the scenario.
             collision: How meshes collide whose link the robot's `collision` does not have.
 
         Raises:
@@ -45,9 +44,6 @@ class RobotFormat(Plugin, ABC):
         self, robot: RobotDescription, spec: RobotSpec, known: Set[str]
     ) -> RobotDescription:
         """Apply the options of `robot:`; a format may first assume limits that its file lacks.
-
-        Args:
-            spec: The `robot:` of the scenario.
 
         Raises:
             RobotError: An option refers to an unknown name, or exceeds the robot's limits.

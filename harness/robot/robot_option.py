@@ -24,10 +24,6 @@ class RobotOption(Plugin):
     def part(self, main: RobotPart | None, spec: RobotSpec, base_dir: Path) -> RobotPart | None:
         """The arm, before a gripper is mounted on it.
 
-        Args:
-            main: The arm; None for a gripper alone.
-            spec: The `robot:` of the scenario.
-
         Raises:
             SpecError: A file has mistakes; each at its place.
             RobotError: A file is not found, or the option does not fit the arm.

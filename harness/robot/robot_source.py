@@ -43,7 +43,6 @@ class RobotSource:
         srdf: The SRDF next to a robot's file; empty for none.
         packages: Folders where package:// is looked up.
         gripper: A bundled gripper to be mounted; empty for none.
-        args: The args of a xacro file.
         tcp_link: Instead of the arm group's tip; empty for that.
         group: The arm's; empty for the one of most joints.
     """

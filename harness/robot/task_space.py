@@ -22,7 +22,6 @@ class TaskSpace:
     """The parts of a link's pose that a group of joints can hold at the same time.
 
     Attributes:
-        held: The parts that it can hold; the others follow from them.
         has_choice: Whether several postures near each other may hold them: with more joints than
             parts, or with a tilt of zero, where a turn about the vertical is left.
     """
@@ -82,7 +81,6 @@ def mechanism_rank(
     Translations count as shares of the longest lever of a joint that turns.
 
     Args:
-        poses_at: The poses of links at joint positions, shape (N, n).
         limits: Lower and upper position limits of all joints, shape (2, n).
     """
     lower, upper = np.maximum(limits[0], -np.pi), np.minimum(limits[1], np.pi)

@@ -184,7 +184,6 @@ class ContactRecord:
 
         Args:
             first: The first of the N samples, in which nothing slides.
-            last: The sample after the last.
             poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
             chosen: Objects; pairs without any of them are left out.
             surfaces: The motion of the surface of each belt since the sample before, in its axes:
@@ -276,9 +275,6 @@ def _way_of_points(
     """How far points of a body's surface moved since the sample before [m], shape (C, 3).
 
     Args:
-        poses: T_world_body at each sample, shape (N, 7).
-        rows: The sample of each point, from 1, shape (C,).
-        points: Where the points are now, in the world [m], shape (C, 3).
         surface: The motion of a belt's surface along its body, as in `slides`.
     """
     now, before = poses[rows], poses[rows - 1]

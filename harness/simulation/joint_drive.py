@@ -29,7 +29,6 @@ class JointDrive:
 
     Attributes:
         position_share: 1 for a motor whose servo has a stiffness, else 0, shape (m,).
-        controller: The controller of the arm's joints.
         arm: Indices of the joints that it moves among the actuated ones: all but grippers'.
     """
 

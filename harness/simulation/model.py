@@ -47,9 +47,6 @@ class ObjectPlace:
     """The indices of an object in the model.
 
     Attributes:
-        obj: The object to be added.
-        body: The id of its body.
-        geoms: The slice of its geoms.
         qpos: The first of its seven position numbers, or the one of a part; -1 when static.
         dof: The first of its six velocity numbers, or the one of a part; -1 when static.
         parking: Its pose while absent, as xyz and quat wxyz, shape (7,).
@@ -69,7 +66,6 @@ class PhysicsModel:
 
     Attributes:
         model: The compiled model; presence of objects and force limits are changed in place.
-        description: The description of the robot.
         servos: One servo for each actuated joint, in the order of the actuator ids.
         qpos: The position index of each movable joint, in description order.
         dof: The velocity index of each movable joint, in description order.
@@ -77,8 +73,6 @@ class PhysicsModel:
         ranges: The simulated limits of the movable joints, shape (n, 2).
         objects: Simulated objects by name, in order.
         frames: The recorded links; the sensors hold 7 numbers for each, after the TCP's 7.
-        body_names: The name of each body, by body id.
-        robot_bodies: The ids of the bodies that are links of the robot.
     """
 
     model: mujoco.MjModel
@@ -107,8 +101,6 @@ def build_model(
 
     Args:
         objects: All objects that are ever in the world; planning-only objects are left out.
-        gravity: The gravitational acceleration [m/s^2].
-        timestep: The physics step [s].
         frames: Links whose poses are recorded in addition to the TCP's.
 
     Raises:

@@ -52,8 +52,6 @@ class Motors:
         """Build the model and record its start state as sample 0.
 
         Args:
-            gravity: The gravitational acceleration [m/s^2].
-            timestep: The physics step [s].
             moving: Makes a context in which the physics advances, which measures its wall time.
 
         Raises:
@@ -236,7 +234,6 @@ class Motors:
         """Step along set points, with the controls that arrive at the motors.
 
         Args:
-            points: Set points of all actuated joints, the first row for now.
             controls: Inputs of the motors at these; a controller that measures computes its own.
         """
         cycle = self._drive.cycle

@@ -29,11 +29,7 @@ SETTLE_FOR = 0.06
 
 
 class MujocoSimulator(TrajectoryTracking):
-    """The physics of one run; it is bitwise deterministic, however the time is divided into calls.
-
-    Attributes:
-        unrecorded: Signals that are not recorded: none.
-    """
+    """The physics of one run; it is bitwise deterministic, however its time is divided."""
 
     unrecorded: tuple[str, ...] = ()
 

@@ -40,7 +40,6 @@ class Recording:
 
     Attributes:
         longest: The most simulated time of the run [s].
-        wrenches: The sensors of force and torque.
     """
 
     def __init__(
@@ -79,8 +78,6 @@ class Recording:
             controls: The controls from one sample to the next, and one more row for the state
                 reached: its recorded forces are those of a servo at its set point,
                 shape (N + 1, m).
-            commands: The set points at the samples after each step, shape (N, m).
-            command_velocities: The set points of velocity, shape (N, m).
 
         Raises:
             SimulationDiverged: The state left the finite numbers.
@@ -282,7 +279,6 @@ class Recording:
         Args:
             object_poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
             surfaces: The velocity of the surface of each belt, as in `Signals.surfaces`.
-            first: The first of the N samples.
         """
         physics, last = self._physics, self.count
         count, rows = last - first, slice(first, last)

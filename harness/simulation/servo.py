@@ -143,8 +143,6 @@ class FeedForward:
 
         Args:
             positions: Positions of every movable joint, mimic joints included, shape (N, n).
-            velocities: Joint velocities, shape (N, n).
-            accelerations: Joint accelerations, shape (N, n).
         """
         model, data = self._model, self._data
         efforts = np.empty((len(positions), model.nv))

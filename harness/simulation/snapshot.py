@@ -49,9 +49,7 @@ class SimulatorCommand:
     Attributes:
         positions: Set points of the actuated joints, shape (m,).
         control: Inputs of the servos, shape (m,).
-        grips: Effort limits of grippers, by actuator.
         pending: Set points of grippers that set out with the next motion, by joint.
-        controller: The joint controller, with its state.
     """
 
     positions: FloatArray
@@ -66,12 +64,8 @@ class PhysicsState:
     """A snapshot of a simulator.
 
     Attributes:
-        step: The state that the next step follows from.
         model: Arrays of the model that change during a run, by name.
-        command: The set points of the robot.
-        samples: The number of samples recorded so far.
         history: Since when each object stands where it was put.
-        faults: The state of the active faults.
         surfaces: Since which samples the surface of each belt moves how.
     """
 

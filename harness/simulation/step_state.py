@@ -43,7 +43,6 @@ class StepState:
     """All that the next step of a model follows from, besides its controls.
 
     Attributes:
-        integration: The positions, velocities and warm start that MuJoCo integrates.
         arrays: The trees, bodies and degrees of freedom that are asleep, as `_ARRAYS` lists them.
         counts: The numbers of those that are awake, as `_COUNTS` lists them.
     """

@@ -50,11 +50,7 @@ class Surfaces:
         wake(self._physics.model, self._data)
 
     def recorded(self, first: int = 0) -> dict[str, FloatArray]:
-        """Velocity of each surface since the sample before: x, y, z [m/s], turn [rad/s], (N, 4).
-
-        Args:
-            first: The first of the samples.
-        """
+        """Velocity of each surface since the sample before: x, y, z [m/s], turn [rad/s], (N, 4)."""
         velocities: dict[str, FloatArray] = {}
         for name, log in self._log.items():
             rows = velocities[name] = np.zeros((self._recording.count - first, 4))

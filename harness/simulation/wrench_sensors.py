@@ -77,8 +77,6 @@ class WrenchSensors:
 
         Args:
             measured: MuJoCo's numbers of all sensors at every sample, shape (N, 6 * sensors).
-            first: The first sample that is read.
-            tared: Whether tares are subtracted.
         """
         sensor = self.sensors[name]
         column = 6 * list(self.sensors).index(name)

@@ -17,8 +17,6 @@ class ImportedWorld:
 
     Attributes:
         world: The world as a world file describes it; mesh files have absolute paths.
-        path: The path of the imported file.
-        notes: Notes on elements that are left out or changed.
         unusable: Objects that lack a mesh file, and why; the world has their places only.
     """
 

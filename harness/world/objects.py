@@ -56,9 +56,6 @@ def resolve_object(
 ) -> WorldObject:
     """The object with every number known.
 
-    Args:
-        pose: The pose T_world_object of the object.
-
     Raises:
         ObjectUnusableError: A dynamic object of planes, one without shapes, mass and inertia, or
             a mesh file that is not there or cannot be used.

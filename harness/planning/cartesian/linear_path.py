@@ -21,7 +21,6 @@ class LinkPath(ABC):
     """A link's way through space, its parameter running evenly from 0 to 1; the link turns evenly.
 
     Attributes:
-        name: What messages call such a way.
         start: T_world_link at parameter 0.
         turn: Rotation vector from 0 to 1, world axes [rad].
         angle: Angle of the rotation [rad].

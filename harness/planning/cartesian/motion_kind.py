@@ -20,7 +20,6 @@ class ConstrainedMotion:
 
     Attributes:
         goals: Free group positions that satisfy the constraints, nearest first.
-        explanation: How the goals were found.
     """
 
     goals: Sequence[FloatArray]

@@ -68,11 +68,6 @@ class MotionArrays:
     ) -> tuple[int, IntArray]:
         """Classify the states of a motion from `low` to `high`.
 
-        Args:
-            check: The compiled function `certify`.
-            low: The number of the first state to classify.
-            high: The number of the last state to classify.
-
         Returns:
             A blocked state or -1, and the first and last states of undecided stretches, (n, 2).
         """
@@ -105,11 +100,7 @@ class MotionArrays:
 
 
 def motion_arrays(model: CollisionModel, space: GroupSpace, margins: FloatArray) -> MotionArrays:
-    """Create the arrays of a scene for a group's motions; pairs that move together are left out.
-
-    Args:
-        margins: The margin of each of the model's pairs [m], shape (K,).
-    """
+    """Create the arrays of a scene for a group's motions; pairs that move together are left out."""
     moving = _moving_joints(space)
     layout = _layout(model, tuple(moving.above), tuple(moving.parent.tolist()))
     margin = margins[layout.pairs]
@@ -225,7 +216,6 @@ class _Layout:
         balls: Centre and radius of each body's ball, shape (B, 4).
         paths: Where the joints of each body begin in `joints`, shape (B + 1,).
         joints: The moving joints that carry each body, tip first.
-        deepest: The largest number of joints that carry a body.
         checks: The two bodies of each pair, and how many of the joints of each body move it
             relative to the other, shape (K, 4).
         pairs: The index of each of them in the scene, shape (K,).

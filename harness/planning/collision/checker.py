@@ -51,7 +51,6 @@ class MotionChecker:
 
     Attributes:
         checks: The number of states checked, as `SampledMotion.counted` has it.
-        lowered: The pairs with a lowered margin.
         can_hold: Whether the arm can stand still at positions (N, dof), which edges require too;
             None where nothing is required.
     """
@@ -103,11 +102,7 @@ class MotionChecker:
         return self.edge_free(positions, positions, 1.0)
 
     def edge_free(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
-        """Whether the straight line between two positions is free; its start is not checked.
-
-        Args:
-            resolution: The largest joint-space distance between checked states [rad].
-        """
+        """Whether the straight line between two positions is free; its start is not checked."""
         length = self.space.distance(first, second)
         if self.can_hold is not None:
             shares = np.linspace(1.0, 0.0, max(1, math.ceil(length / HOLD_RESOLUTION)), False)

@@ -47,13 +47,7 @@ class SceneObject:
 
 @dataclass(frozen=True, eq=False)
 class SceneState:
-    """A snapshot of a planning scene.
-
-    Attributes:
-        objects: The objects by name.
-        allowed: Pairs that the scene allows in addition to the robot's.
-        unpadded: Pairs that keep no padding.
-    """
+    """A snapshot of a planning scene."""
 
     objects: Mapping[str, SceneObject]
     allowed: frozenset[tuple[str, str]]
@@ -65,9 +59,7 @@ class Body:
     """A link or an object as a set of geometries that move together.
 
     Attributes:
-        name: The name of the link or the object.
         rigid: Its shapes, and the joint that moves them.
-        is_link: A link of the robot.
         is_held: Whether this is an attached object.
     """
 
@@ -160,11 +152,7 @@ class CollisionModel:
         return self.geometry.createData()
 
     def near(self, configuration: FloatArray, margins: FloatArray) -> list[tuple[int, Touch]]:
-        """Pairs that are not farther apart than their margins, with their index, nearest first.
-
-        Args:
-            margins: The margin of each pair of bodies [m], shape (K,).
-        """
+        """Pairs that are not farther apart than their margins, with their index, nearest first."""
         robot, of_row = self.robot, self.pair_of_row
         pin.forwardKinematics(robot.model, robot.data, configuration)
         nearest: dict[int, float] = {}

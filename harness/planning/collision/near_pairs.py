@@ -37,10 +37,6 @@ class PlacedShapes:
         """The rows whose shapes are not farther apart than their margins, with their distances [m].
 
         Only shapes whose boxes are that near are checked.
-
-        Args:
-            rows: Pairs of shapes, shape (R, 2).
-            margins: The margin of each of them [m], shape (R,).
         """
         rotations = np.array([pose.rotation for pose in poses])[self._joints]
         places = np.array([pose.translation for pose in poses])[self._joints]

@@ -27,7 +27,6 @@ class RigidShapes:
     Attributes:
         joint: Pinocchio's joint they move with; 0 stands still.
         body_shapes: The shapes, placed on their body.
-        placement: The pose of the body on the joint.
     """
 
     joint: int

@@ -31,13 +31,7 @@ class SampledMotion:
 
     @staticmethod
     def of(path: FloatArray, metric: FloatArray, resolution: float) -> SampledMotion:
-        """The states of a path.
-
-        Args:
-            path: The corners of the path, shape (C, dof).
-            metric: Weights of joint-space distances, shape (dof,).
-            resolution: The largest joint-space distance between two states [rad].
-        """
+        """The states of a path."""
         lengths = np.linalg.norm(np.diff(path, axis=0) * metric, axis=1)
         counts = np.maximum(1.0, np.ceil(lengths / resolution))
         places = np.append(0.0, np.cumsum(counts)) - 1.0

@@ -26,7 +26,6 @@ class StageFinding:
     """A stage's result, with additional data for the report.
 
     Attributes:
-        stage: The stage and its status.
         nearest: A state to draw; None where there is none.
         advice: What to do if this is the first failed stage.
     """
@@ -41,13 +40,9 @@ class StageRequest:
     """A failed planning call.
 
     Attributes:
-        failure: The error that was raised.
-        kinematics: The kinematics of the robot.
-        scene: The planning scene to check in.
         space: The group, with the other joints at the start state.
         start: The start positions in description order.
         goal: The goal; None for a motion without one, such as a relative motion.
-        options: The options of the planning call.
         checker: The checker of the motion's states; None where the motion cannot begin.
     """
 

@@ -40,7 +40,6 @@ def choose_goals(
 
     Args:
         task: The planning call with its options; the goal satisfies its path constraints.
-        start: The start positions in description order.
 
     Raises:
         PlanningFailed: The errors of `find_goals`, or GOAL_VIOLATES_PATH_CONSTRAINTS.

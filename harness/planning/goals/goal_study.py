@@ -38,10 +38,8 @@ class Branch:
     """A solution inside the limits, and whether it is free.
 
     Attributes:
-        positions: The positions of the group's joints.
         name: The posture of the arm; empty where the solver has no branches.
         distance: The joint-space distance from the start [rad].
-        touches: The pairs that are too near.
         residual: The position error [m] and the orientation error [rad].
     """
 
@@ -69,9 +67,7 @@ class GoalStudy:
     """The solutions of inverse kinematics for a goal, and the collisions of the nearest ones.
 
     Attributes:
-        answer: The result of inverse kinematics.
         branches: The nearest solutions, all checked, nearest first.
-        unchecked: The number of further solutions.
         outside: The names of the branches outside the limits, in the answer's order.
     """
 

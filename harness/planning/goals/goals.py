@@ -51,10 +51,6 @@ def find_goals(
 ) -> GoalCandidates:
     """Find free joint positions that reach a goal.
 
-    Args:
-        start: The start positions in description order.
-        seed: The seed of solvers that draw joint positions.
-
     Raises:
         PlanningFailed: GOAL_STATE_INVALID (joints outside their limits), NO_IK_SOLUTION,
             GOAL_CONSTRAINTS_VIOLATED (the arm's joints are too few for the orientation),

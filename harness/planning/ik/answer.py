@@ -15,9 +15,7 @@ class LimitedSolution:
 
     Attributes:
         positions: Group positions, turned by whole turns towards the limits.
-        joint: The joint that is farthest outside.
         value: The joint's position [rad or m].
-        limit: The limit that it exceeds.
     """
 
     positions: FloatArray
@@ -43,7 +41,6 @@ class IkAnswer:
 
     Attributes:
         solutions: Solutions inside the limits and the tolerance, nearest to the seed first.
-        outside_limits: Geometric solutions outside the limits.
         excess: How far the goal is beyond the chain's reach [m]; 0 when unknown or within reach.
         method: The name of the solver, a plug-in of the kind `ik_solver`.
         task: What is solved for: `pose`, or for an arm with too few joints `position and pitch`

@@ -29,7 +29,6 @@ class NearestPose:
     """Where a link comes nearest to its goal.
 
     Attributes:
-        positions: Group positions, inside the limits.
         pose: The pose T_world_link at these positions.
         shift: Distance to the goal's point [m].
         turn: The rotation from the goal's orientation, or its pitch [rad]; 0 for a point alone.
@@ -76,7 +75,6 @@ def nearest_pose(
     reached; that nothing is nearer is not proved.
 
     Args:
-        seed_positions: Where the first search starts, shape (dof,).
         metres_per_radian: What a turn counts: `EVEN`, `KEEP_TURN` or `KEEP_POINT`.
     """
     task = LinkTask(space, goal, metres_per_radian=metres_per_radian)
@@ -96,7 +94,6 @@ def nearest_free_shift(
 
     Args:
         goal: The goal, in collision in each of its solutions.
-        is_free: Whether group positions are free.
 
     Returns:
         The move [m], shape (3,), and free group positions there; None when no place within the

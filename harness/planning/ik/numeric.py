@@ -154,7 +154,6 @@ class LinkTask:
         at a limit that would exceed it are excluded from a step.
 
         Args:
-            seed: The joint positions to start from, shape (dof,).
             remaining: The share of the squared error above which the search ends, if it remains
                 after `_WINDOW` iterations.
 
@@ -235,7 +234,6 @@ def solve_numeric(
     """Find joint positions that bring a link to its goal: from the seed, then from near the goal.
 
     Args:
-        seed_positions: The start of the first search, shape (dof,).
         most_restarts: The largest number of searches after the first, if none finds a solution.
         enough: The number of solutions that ends the search; None for a spread.
         part: The part of the goal that suffices, where the rest comes as near as it can.

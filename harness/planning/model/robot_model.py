@@ -112,7 +112,6 @@ class GroupSpace:
         acceleration: The acceleration limits, shape (dof,).
         metric: Weights of joint-space distances, shape (dof,).
         leverage: Share of the arm's reach that each joint moves, 0.1 to 1, shape (dof,).
-        task_space: The parts of a link's pose that the group can hold.
         wraps: Whether a whole turn brings each joint to the same place, shape (dof,).
     """
 

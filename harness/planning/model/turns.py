@@ -26,7 +26,6 @@ def turns_from(middle: FloatArray, rotations: FloatArray, tolerance: Sequence[fl
 
     Args:
         middle: The rotation from which turns are measured, shape (3, 3).
-        rotations: The rotations at the ends of the turns, shape (N, 3, 3).
         tolerance: The tolerance about x, y, z [rad], which says which axes are free.
     """
     relative = middle.T @ rotations

@@ -24,8 +24,6 @@ class Search:
 
     Attributes:
         waypoints: The path, shape (N, dof), or None when there is none.
-        checks: The number of state checks.
-        vertices: The number of vertices of its trees or graph.
         gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved,
             None if unknown.
         planner_id: The planner's name; of a pipeline other than `ompl`, the pipeline's name first.
@@ -52,9 +50,6 @@ def search(
     """Search a path from the start to any of the goals.
 
     The same arguments give the same path to the bit.
-
-    Args:
-        seed: The seed of samples.
 
     Raises:
         ValueError: A pipeline, a planner or a parameter is unknown; says which there are.
@@ -94,7 +89,6 @@ class Effort:
         checks: The state checks of all searches.
         gaps: The remaining distances of the searches that failed, where they are known [rad].
         planner_id: The planner of the last search.
-        attempts: The attempts that were begun.
     """
 
     checks: int = 0

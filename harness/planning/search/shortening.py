@@ -25,9 +25,7 @@ def shorten(
     whole path.
 
     Args:
-        waypoints: The waypoints, free along the edges, shape (N, dof).
         checker: The checker of the edges; margins are kept as they were on the path.
-        resolution: The resolution of the edge checks [rad].
         seed: The seed of the random points; the same seed gives the same path.
 
     Returns:
@@ -64,9 +62,6 @@ def find_shortcut(
     path: FloatArray, knots: Sequence[float], places: Sequence[float], worth: float
 ) -> tuple[int, FloatArray, FloatArray, int] | None:
     """A straight line between two points on the path that is worth checking.
-
-    Args:
-        path: The waypoints, shape (N, dof).
 
     Returns:
         The number of waypoints before the first point, both points, and the first waypoint after

@@ -35,11 +35,7 @@ SmoothedOver = Callable[[float], Curve]
 
 
 class TimingError(Exception):
-    """A path cannot be given times under the limits.
-
-    Attributes:
-        details: The limit that is broken, and its numbers.
-    """
+    """A path cannot be given times under the limits."""
 
     def __init__(self, message: str, details: Details | None = None) -> None:
         super().__init__(message)
@@ -53,7 +49,6 @@ class Limits:
     Attributes:
         velocity: The velocity limits; never infinite.
         acceleration: The acceleration limits; never infinite.
-        jerk: The jerk of every joint; inf for none.
         dynamics: The dynamics of the efforts; None where the robot gives no effort limits.
         commanded: The accelerations of the joints without scaling, which the commands between the
             set points of a trajectory keep as well; None where nothing interpolates.

@@ -201,10 +201,6 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
     It begins and ends where the curve does, at rest if the curve does, and lasts `window` longer;
     velocities and accelerations stay within what the curve's keep to.
 
-    Args:
-        duration: The duration of the curve [s].
-        window: The window of the mean [s].
-
     References:
         L. Biagiotti, C. Melchiorri, "FIR filters for online trajectory planning with time- and
         frequency-domain specifications", Control Engineering Practice 20(12), 2012.

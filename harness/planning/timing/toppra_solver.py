@@ -76,12 +76,7 @@ def _rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray:
 
 
 def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
-    """The path with constant acceleration of its parameter between grid points, and its duration.
-
-    Args:
-        grid: The parameter at each grid point, shape (N + 1,).
-        rates: Its rate at each grid point [1/s], shape (N + 1,).
-    """
+    """The path with constant acceleration of its parameter on each step, and its duration."""
     steps = np.diff(grid)
     growths = 0.5 * np.diff(rates**2) / steps
     ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])

@@ -24,7 +24,6 @@ class Violation:
         what: The violation in words: `end_effector_link is turned 0.20 rad about y, 0.10 rad are
             allowed`.
         excess: Beyond its tolerance [rad or m].
-        record: The value and its bounds.
     """
 
     what: str
@@ -51,10 +50,5 @@ class HeldConstraints(Protocol):
         start: FloatArray,
         seed: int,
     ) -> list[FloatArray]:
-        """Free group positions that reach a goal and satisfy the constraints.
-
-        Args:
-            start: The start positions of the group, shape (dof,).
-            seed: The seed of random positions.
-        """
+        """Free group positions that reach a goal and satisfy the constraints."""
         ...

@@ -36,12 +36,7 @@ _POSITION_SLACK = 1e-9  # [rad or m] rounding at a limit
 
 @dataclass(frozen=True)
 class Defect:
-    """What is wrong with a trajectory.
-
-    Attributes:
-        message: The defect in words.
-        details: The rule that is broken, and its numbers.
-    """
+    """What is wrong with a trajectory."""
 
     message: str
     details: Details
@@ -79,7 +74,6 @@ def find_departure(
     """Where a trajectory leaves its path farther than it may, or None.
 
     Args:
-        waypoints: The waypoints of the path that was checked, shape (N, dof).
         deviation: Largest joint-space distance from its lines [rad].
     """
     away = distances_to_path(trajectory.positions, waypoints)
@@ -98,12 +92,7 @@ def find_departure(
 def path_collision(
     waypoints: FloatArray, checker: MotionChecker, resolution: float = FINAL_RESOLUTION
 ) -> Defect | None:
-    """Where a path without times is blocked first, or None.
-
-    Args:
-        waypoints: Group positions, shape (N, dof); the first one is free.
-        resolution: The joint-space distance between checked states [rad].
-    """
+    """Where a path without times is blocked first, or None."""
     blocked = checker.first_block(waypoints, resolution)
     if blocked is None:
         return None

@@ -57,10 +57,7 @@ class Srdf:
     """A semantic description.
 
     Attributes:
-        passive: Joints without a drive.
         disabled: Link pairs (sorted) that are not checked, with the reason.
-        notes: Notes on ignored elements.
-        root_element: The document it was read from.
     """
 
     groups: tuple[SrdfGroup, ...] = ()

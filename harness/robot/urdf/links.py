@@ -49,13 +49,8 @@ class LinkReader:
     """Reads the links of one file.
 
     Attributes:
-        folder: The folder to which mesh file names are relative.
-        packages: Search path for other mesh file names.
-        materials: Colours of the file's named materials.
-        notes: Collects notes on corrected elements.
         undrawn: Collects the links of visuals that cannot be drawn, with the reason.
         sizeless: Collects the links of shapes without a thickness, with the shape.
-        meshes: Collects the elements of meshes that collide, with their links.
     """
 
     folder: Path

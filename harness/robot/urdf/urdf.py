@@ -55,15 +55,7 @@ MeshElements = Mapping[Mesh, tuple[XmlElement, str]]
 
 @dataclass(frozen=True, eq=False)
 class Urdf:
-    """A robot's tree: links with parents before children, joints in the order of their children.
-
-    Attributes:
-        notes: Notes on ignored and changed elements.
-        elements: Elements of links and joints.
-        root_element: The document, for readers of optional elements.
-        mesh_elements: Elements and links of the meshes that collide.
-        frictions: Sliding friction coefficients by link, of those that have one.
-    """
+    """A robot's tree: links with parents before children, joints in the order of their children."""
 
     name: str
     links: tuple[Link, ...]
