@@ -99,7 +99,7 @@ def show_results(
     _print_failures(arguments, suite, style)
     say("")
     if arguments.repeat > 1:
-        _print_repetitions(suite, arguments.repeat, style)
+        _print_repetitions(suite, style)
     else:
         _print_rates(suite, columns, style)
     if suite.results:
@@ -121,15 +121,13 @@ def show_results(
     show_interruption(arguments, suite, seconds)
 
 
-def _print_repetitions(suite: SuiteRun, repeat: int, style: Style) -> None:
-    """Print how the runs of each case compare, and where one differs from the first."""
+def _print_repetitions(suite: SuiteRun, style: Style) -> None:
+    """Print whether the runs of each case have one digest."""
     from harness.reporting.terminal import repeats
 
     for runs in suite.repetitions():
         name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
         say(f"{name}: {repeats(runs, style)}")
-    for index, difference in suite.differences.items():
-        say(f"  run {index % repeat + 1} of {suite.jobs[index].file}: {difference}")
 
 
 def show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:

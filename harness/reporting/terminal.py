@@ -311,7 +311,10 @@ def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
         [(digest, count)] = digests.items()
         return f"{style.mark(True)} {count} runs, one digest: {digest}"
     repeated = "; ".join(f"{count} x {digest}" for digest, count in digests.items())
-    return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {repeated}"
+    return (
+        f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {repeated}; `harness"
+        " compare` prints where two reports part"
+    )
 
 
 def _joined(lines: Iterable[str]) -> str:

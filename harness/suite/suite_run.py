@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,11 +14,11 @@ from harness.reporting.progress_events import ProgressEvent
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.session.run_request import RunRequest
 from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated
 from harness.suite.installation import installation
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import Plan
-from harness.suite.repetitions import Repetitions
 from harness.suite.request import SuiteRequest
 from harness.suite.results import Results
 from harness.suite.sampling import Sampling
@@ -48,14 +47,7 @@ class SuiteRun:
     def __init__(self, plan: Plan, request: SuiteRequest, files: Sequence[Path] = ()) -> None:
         self.plan = plan
         self.files = files
-        self._repetitions = (
-            Repetitions([each.job for each in plan], request.repeat) if request.repeat > 1 else None
-        )
-        self.jobs = (
-            self._repetitions.jobs
-            if self._repetitions is not None
-            else LazySequence(len(plan), lambda index: plan[index].job)
-        )
+        self.jobs = LazySequence(len(plan) * request.repeat, self._job)
         self.results = Results(len(self.jobs))
         self.resumed = 0
         self.is_interrupted = False
@@ -64,6 +56,12 @@ class SuiteRun:
         self._request = request
         self._stream: Stream | None = None
         self._sampling = Sampling(plan, is_part=self.is_part)
+
+    def _job(self, index: int) -> RunRequest:
+        """A run; of several runs of a case only the first one is reported."""
+        case, repetition = divmod(index, self._request.repeat)
+        job = self.plan[case].job
+        return replace(job, report_dir=None) if repetition else job
 
     def collect(
         self,
@@ -87,22 +85,19 @@ class SuiteRun:
             watch(index, event)
 
         try:
-            with ExitStack() as stack:
-                if self._repetitions is not None:
-                    stack.enter_context(self._repetitions)
-                self._open_stream()
-                for count, (index, result) in enumerate(self._arriving(server, watched), 1):
-                    self.unfinished.pop(index, None)
-                    on_result(index, self._keep(index, result))
-                    if count % CASES_BETWEEN == 0:
-                        free_memory()
+            self._open_stream()
+            for count, (index, result) in enumerate(self._arriving(server, watched), 1):
+                self.unfinished.pop(index, None)
+                on_result(index, self._keep(index, result))
+                if count % CASES_BETWEEN == 0:
+                    free_memory()
         except KeyboardInterrupt:
             self.is_interrupted = True
         self.count()
 
     def take(self, index: int, result: CaseResult, place: Place | None) -> None:
         """Take a result; `place` is where it stands in the stream."""
-        if self._repetitions is None:
+        if self._is_sampled:
             self._sampling.note(index, result.outcome, result.digest)
         self.results.keep(index, result, place)
 
@@ -129,7 +124,7 @@ class SuiteRun:
     @property
     def _is_sampled(self) -> bool:
         """Repetitions are compared with each other, not counted as samples."""
-        return self._repetitions is None
+        return self._request.repeat == 1
 
     def _arriving(self, server: WarmServer, watch: Watcher) -> Iterator[tuple[int, CaseResult]]:
         how = self._request
@@ -165,8 +160,6 @@ class SuiteRun:
 
     def _keep(self, index: int, result: CaseResult) -> CaseResult:
         """Take a result that was computed, and write it into the stream."""
-        if self._repetitions is not None:
-            result = self._repetitions.take(index, result)
         place = None
         if self._stream is not None:
             planned, job = self.plan[index // self._request.repeat], self.jobs[index]
@@ -181,11 +174,6 @@ class SuiteRun:
         return index in self.results or (self._is_sampled and self._sampling.is_needless(index))
 
     # -- results -------------------------------------------------------------------------------
-
-    @property
-    def differences(self) -> dict[int, str]:
-        """Index into `jobs` of a repetition -> where it differs from the first run of its case."""
-        return self._repetitions.differences if self._repetitions is not None else {}
 
     @property
     def missing(self) -> int:

@@ -15,7 +15,7 @@ from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.plugins.comparison.alignment import StepPair, aligned_steps, names_of
 from harness.plugins.comparison.farthest import Farthest, farthest_apart
-from harness.recording.first_difference import FirstDifference, first_difference
+from harness.plugins.comparison.first_difference import FirstDifference, first_difference
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
