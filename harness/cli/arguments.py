@@ -107,7 +107,6 @@ class CommandParser(Parser):
     def parse_known_args(
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Parse the arguments of the command."""
         self.learn()
         return super().parse_known_args(args, namespace)
 

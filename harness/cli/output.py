@@ -51,7 +51,6 @@ class Output:
         self._last_tick = 0.0
 
     def line(self, text: str) -> None:
-        """Write one line, at once."""
         self._write_line(terminal_text, with_short_names(text))
 
     def command(self, text: str) -> None:

@@ -89,7 +89,6 @@ class ProgressLines:
             self._output.status(self._status(event, index), is_frequent=is_frequent)
 
     def result(self, index: int, result: CaseResult) -> None:
-        """Show a case's outcome."""
         self._done += 1
         self._last_end = self._clock()
         if self._shown.get(index) != result.outcome:

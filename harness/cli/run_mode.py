@@ -15,13 +15,7 @@ from harness.suite.hooks import NO_HOOKS, SuiteHooks
 
 @dataclass(frozen=True)
 class RunCall:
-    """A call of `harness run`.
-
-    Attributes:
-        arguments: The options that the user gave.
-        files: The scenario files that the command found.
-        hooks: What modes change in how the suite runs.
-    """
+    """A call of `harness run`."""
 
     arguments: argparse.Namespace
     files: Sequence[Path]

@@ -144,7 +144,6 @@ def _samples_of(
 
 
 def _hand_with(run: Run, link: str) -> Run | None:
-    """The run with the arm selected whose gripper has a link; None where none has."""
     hands = each_hand(run)
     return next((hand for hand in hands if link in hand_links(gripper_of(hand))), None)
 
@@ -223,7 +222,6 @@ class _Contact:
     """A contact of an object in the hand with another, during one hold.
 
     Attributes:
-        samples: The samples at which the two touch.
         dragged: How far the object is dragged along the other since it touches [m], shape (n,);
             None where nothing excuses the contact.
         leaves: Whether the object has touched the other since before it was gripped.

@@ -57,9 +57,6 @@ def bodies_touching(run: Run, name: str, but: Collection[str] = ()) -> dict[str,
     """Force of every body that ever touched an object [N], shape (N,) each.
 
     Gaps of up to `DEBOUNCE` between two contacts are closed; nothing outlasts its last contact.
-
-    Args:
-        but: Bodies that are left out.
     """
     return {
         other: without_gaps(force_between(run, {name}, {other}), run.signals.times, DEBOUNCE)

@@ -41,9 +41,6 @@ def holds_now(
     """Whether an expectation passes that ends the current step.
 
     Args:
-        until: The expectation that may end the step.
-        cell: The cell in which the step runs.
-        simulator: The simulator of the cell, whose record is read.
         since: Time [s] and sample at which the step began.
         looked: The last sample at which it was found not to hold; 0 before the first look.
     """

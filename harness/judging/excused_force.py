@@ -105,8 +105,6 @@ def leaving_limit(
     """Largest mean force with which a held object presses what it leaves [N].
 
     Args:
-        name: The name of the object.
-        samples: The samples of the contact.
         force: The mean force at these samples [N], shape (n,).
         limit: What `held_limit` says of these samples, shape (n,).
     """

@@ -106,7 +106,6 @@ class Expectation(ExpectationFields):
         """The verdict, without the expectation's text and its place in the file.
 
         Args:
-            run: The run with its recorded signals.
             step: The id of the step under which it stands; empty for the whole run.
 
         Raises:

@@ -44,7 +44,6 @@ class MarginSignal:
     Attributes:
         values: The values, not negative where the predicate holds; NaN where it is unknown, shape
             (n,).
-        unit: The unit of the values.
         evidence: What the sample at an index of the window shows.
         applies: Samples at which the predicate is defined (default all): distance to an object has
             no value before the object exists. `always` skips the others, nothing holds at them.

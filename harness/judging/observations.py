@@ -34,7 +34,6 @@ class Observations:
         clearance_cutoff: Distances up to here must be exact [m]; 0 where recorded ones are read
             as they are, None where none are read.
         planned_clearances: Whether distances with the arm at its commands are needed, too.
-        pictures: The camera pictures that are needed.
     """
 
     frames: frozenset[str] = frozenset()

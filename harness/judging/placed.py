@@ -61,9 +61,6 @@ def check_expectation(spec: Expectation, loc: Loc, scope: Scope, step: str = "")
     """Report what is wrong with an expectation; names may be of steps and objects further down.
 
     Args:
-        spec: The expectation to be checked.
-        loc: Its place in the file.
-        scope: Every name of the file.
         step: The id of the step under which it stands; empty for the whole run.
     """
     if spec.during is not None and spec.during not in scope.step_ids:

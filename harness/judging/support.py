@@ -170,7 +170,6 @@ def supports(run: Run, name: str, links: Collection[str] = ()) -> dict[str, Floa
     contact. Where no direction was recorded, the whole force of a body that is below counts.
 
     Args:
-        run: The run with its recorded signals.
         links: Links of the robot that count; by default none.
     """
     carrying: dict[str, FloatArray] = {}

@@ -45,7 +45,6 @@ def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
     """SI units of a number that may carry one; none of anything else.
 
     Args:
-        annotation: The annotation of a field, or of a part of one.
         metadata: The metadata of the field, where pydantic has taken it out of the annotation.
     """
     members = [each for each in branches(annotation) if each is not type(None)]

@@ -131,7 +131,6 @@ class PredicateFields(ExpectationFields, TimeFields):
 
     Attributes:
         judged: When a bare predicate is judged.
-        quantities: The quantities that the predicate measures.
     """
 
     word: ClassVar[str] = ""

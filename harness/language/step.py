@@ -27,7 +27,6 @@ class Block:
     """Steps inside a step, one time through.
 
     Attributes:
-        loc: The location of the list in the file.
         path: The path of the list in the expanded file: `steps[2].repeat[0]`.
         suffix: Appended to the ids of the steps where they run more than once: `#2`.
     """
@@ -50,9 +49,7 @@ class StepFields(SpecModel):
         has_corners: Whether that motion passes several points or goals.
         is_arc: Whether that motion is an arc, which three of its points determine.
         moves_gripper: Whether the step commands the gripper while the arm keeps its place.
-        keeps_arm_still: Whether the arm keeps its place during the step.
         moves_objects: Whether the step lets objects appear, vanish or jump.
-        detaches_object: Whether the step detaches what the gripper holds.
         keys_inside: Keys next to the verb that may stand inside its content as well.
         results: The types of the parts that the step reports with `cell.report`, besides those of
             the cell's own methods; a saved run is read back with them.

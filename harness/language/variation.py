@@ -109,7 +109,6 @@ class Distribution(SpecModel):
         return self.written(self.number_at(share))
 
     def draw(self, rng: random.Random) -> Any:
-        """A random value, as a file writes it."""
         return self.at(rng.random()) if self.choice is None else rng.choice(self.choice)
 
     def written(self, number: float) -> float | str:

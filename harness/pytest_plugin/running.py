@@ -177,7 +177,6 @@ def _attach_to_allure(cases: Sequence[SuiteCase]) -> None:
 
 
 def _margins(verdicts: Sequence[Verdict]) -> str:
-    """A table of verdicts for spreadsheets."""
     text = StringIO()
     table = csv.writer(text)
     table.writerow(("expectation", "step", "status", "margin", "unit", "reason"))

@@ -27,10 +27,8 @@ class ItemRecord:
     """The results of one item; xdist's workers send it to the controller as plain data.
 
     Attributes:
-        name: Node id of the item.
         number: Position of the item in its file, from 0.
         cases: One case, or all samples that count; never empty.
-        rates: Success rates of the samples.
     """
 
     name: str

@@ -20,7 +20,6 @@ class CommandRecord:
             effect, `end` is the end of a launched program or of the session.
         controller: The controller that it addresses, such as `arm_controller`.
         goal: The goal's identifier in hex; empty for what came on a topic.
-        content: The values of the message.
         answer: The immediate result: `accepted`, or why not; of a plan, what became of it.
         summary: What the program requests, for people.
         result: What became of a goal, and when; empty where nothing ended, or it has no result.

@@ -61,7 +61,6 @@ class NearestState(Detail):
         pose: T_world_link in the state.
         position_error: Between pose and target [m].
         orientation_error: Between pose and target [rad].
-        touches: Bodies that are too near in the state.
         nearest_free: Where the goal would be free.
     """
 

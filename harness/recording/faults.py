@@ -20,8 +20,6 @@ class InjectedFault(Detail):
 
     Attributes:
         target: The object or joint that it concerns; empty where it concerns the whole robot.
-        before: The value that it replaces.
-        after: The value that it sets.
         receipt: Whether it had an effect; None until the run has been observed.
         evidence: What shows the effect, or why there is none; None until then.
     """

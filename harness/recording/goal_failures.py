@@ -40,7 +40,6 @@ class IkSolution(Detail):
         branch: Name of the branch; empty where the solver names none.
         distance: The joint-space distance from the start [rad].
         status: Whether it is free, and whether the motion ends there.
-        touches: Bodies that are too near.
     """
 
     joint_positions: Floats

@@ -21,7 +21,6 @@ def replayed_link_poses(
     """T_world_link at every sample, shape (N, 7) each.
 
     Args:
-        robot: The robot of the run.
         joint_positions: Columns in description order, shape (N, n).
         links: The links to return; all when None.
     """
@@ -41,9 +40,6 @@ def planned_tcp_poses(
     """T_world_tcp where some joints move and the others stay as when the step began.
 
     Args:
-        run: The run, whose robot and joint positions count.
-        step: The step that plans the motion.
-        joint_names: The joints that move.
         positions: Their positions, shape (N, joints).
 
     Returns:

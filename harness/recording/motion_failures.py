@@ -35,7 +35,6 @@ class TrajectoryFailure(Detail):
 
     Attributes:
         distance: The distance from the required position [rad or m].
-        excess: The amount beyond the limit.
         path_deviation: The distance from the path that was checked [rad].
         time: The time since the motion's start [s].
     """
@@ -55,7 +54,6 @@ class OverloadFailure(Detail):
 
     Attributes:
         held: The objects that the robot holds; None without a payload.
-        unloaded: The effort without them.
         most_mass: The mass that the robot can hold there [kg].
     """
 
@@ -98,7 +96,6 @@ class SearchFailure(Detail):
 
     Attributes:
         gap: Joint-space distance between the search trees [rad].
-        straight_way: The straight way to the first goal.
     """
 
     state_checks: int

@@ -23,7 +23,6 @@ class NpzError(ValueError):
 
     Attributes:
         key: Name of the array; empty when it is the file.
-        reason: The reason for which the file is refused.
     """
 
     def __init__(self, key: str, reason: str) -> None:
@@ -49,9 +48,6 @@ class NpzFile:
 
     Opening reads the headers alone. Arrays that hold pickled objects are refused, and so is a file
     whose arrays take more than `most` bytes, whatever their compressed size.
-
-    Attributes:
-        headers: The headers of every array, by name.
 
     Raises:
         NpzError: The file is damaged, too large or no .npz; carries the array's name.

@@ -31,7 +31,6 @@ def to_plain(value: Any, *, not_finite: NotFinite = "strings") -> Any:
     """Dictionaries, lists, strings and numbers for any record.
 
     Args:
-        value: The record to convert into plain data.
         not_finite: Whether numbers that are not finite are null, or strings such as `NaN`.
 
     Raises:
@@ -85,11 +84,6 @@ class PlainError(ValueError):
 
 def from_plain(plain: Any, kind: Any, key: str = "") -> Any:
     """A value of a type from its plain form; unknown keys are left out, defaults fill in.
-
-    Args:
-        plain: The value as plain data.
-        kind: The type of the value.
-        key: Where the data is in its document.
 
     Raises:
         PlainError: The data does not fit the type.
@@ -171,7 +165,6 @@ def _tuple(plain: Any, kinds: tuple[Any, ...], key: str) -> tuple[Any, ...]:
 
 
 def _record(plain: Any, kind: type, key: str) -> Any:
-    """A dataclass from a mapping of its fields."""
     document, hints = _mapping(plain, key), _hints(kind)
     for entry in fields(kind):
         has_default = entry.default is not MISSING or entry.default_factory is not MISSING

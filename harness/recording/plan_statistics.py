@@ -16,8 +16,6 @@ class PlanStatistics(Detail):
 
     Attributes:
         planner_id: The planner, or `direct joint motion` where no search was needed.
-        state_checks: States that were checked for collision.
-        waypoints: The number of waypoints.
         path_length: Joint-space length of the path [rad].
         raw_path_length: Its length before it was shortened [rad].
         duration: The time that the motion takes [s].
@@ -40,7 +38,6 @@ class SearchStatistics(Detail):
     Attributes:
         attempts: How often it began anew, the last one included.
         search_checks: The part of the state checks that the search made.
-        vertices: The number of vertices of its trees or graph.
         resolution: The largest distance between two checked states [rad].
         path_deviation: The largest distance of the motion from its path [rad].
     """

@@ -36,7 +36,6 @@ class ObjectRecord:
         visuals: Shapes that pictures show, where they differ from `shapes`.
         center_of_mass: The centre of mass in the object's frame [m]; empty when unknown.
         joint: The hinge or slide by which a part of a fixture moves; None of any other object.
-        holes: The holes in its boxes.
     """
 
     name: str
@@ -134,19 +133,16 @@ class Run:
         case: Empty when the file has one case.
         attachments: What the planner believed to hold.
         steps: The steps in execution order, nested ones flat.
-        signals: The signals that were recorded.
         gravity: The gravity vector in the world [m/s^2].
         timestep: The timestep of the physics [s].
         allowed_contacts: Link or object pairs whose contact is no collision (the SRDF's).
         findings: The notes, and where plan and physics disagree.
         contacts: Every pair that touched, the first to touch first.
-        source: Text of the scenario file.
         versions: The version of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
         unrecorded: Names of `Signals`' fields that were not recorded, as a bag has no contacts, and
             `attachments`, `steps` and `step_results`; an expectation that needs one is not
             observable.
-        cameras: Every camera of robot, world and scenario.
         captures: Pictures taken, in order of time.
         commands: What external programs commanded, in the order of arrival.
         files: Content of `captures` by path in the run's folder; a saved run reads each on first

@@ -76,7 +76,6 @@ class VideoRecord:
         times: Simulation time of every frame [s], rising evenly by 1 / `rate`.
         rate: Frames a second of simulated time.
         width: The width in pixels: the camera's, made even.
-        height: The height in pixels: the camera's, made even.
         backend: Who drew it: `egl`, `osmesa` or `rays`.
     """
 

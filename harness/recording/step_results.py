@@ -28,7 +28,6 @@ class SceneChange(Detail):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All these objects."""
         return (*(self.added or ()), *(self.removed or ()), *(self.moved or ()))
 
 

@@ -48,7 +48,6 @@ def compact_json(value: object, *, not_finite: NotFinite = "null") -> str:
     """A value as one line of strict JSON.
 
     Args:
-        value: Plain data and dataclasses.
         not_finite: Whether numbers that are not finite are null, or strings such as `NaN`.
     """
     plain = to_plain(value, not_finite=not_finite)

@@ -54,7 +54,6 @@ class Reporter(Plugin, ABC):
 
         Args:
             folder: The folder, under the temporary name that it has until it is complete.
-            stored: The run with all its drawings.
         """
 
 

@@ -25,7 +25,6 @@ class SuccessRate:
         at_least: Required rate; None when the file requires none.
         verdict: `shown` when the rate is at least the required one, `refuted` when not, `open`
             when these samples do not decide.
-        stopped_early: Whether the sequential test ended the sampling.
         overlapping: Samples that were run although objects overlap at their start.
         redrawn: Samples that were drawn again because objects overlapped.
         redraws: How often, of all of them together.

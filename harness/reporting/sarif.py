@@ -24,12 +24,7 @@ RULES = {
 
 
 def sarif_document(invalid: Iterable[Problem], predicted: Iterable[Problem]) -> dict[str, Any]:
-    """The document.
-
-    Args:
-        invalid: The mistakes in files.
-        predicted: The steps that will fail.
-    """
+    """The document."""
     found = [("invalid-file", each) for each in invalid]
     found += [("step-will-fail", each) for each in predicted]
     rules = [{"id": name, "shortDescription": {"text": text}} for name, text in RULES.items()]

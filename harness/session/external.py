@@ -42,5 +42,4 @@ class NoPrograms:
         )
 
     def refusal(self) -> str:
-        """Nothing."""
         return ""

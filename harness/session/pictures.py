@@ -66,7 +66,6 @@ class Pictures:
                 background.close()
 
     def captured(self, activity: Activity) -> Captures:
-        """The pictures of the cameras."""
         return ((), {}) if self._captures is None else self._captures.result(activity)
 
     def begin(self) -> None:

@@ -28,7 +28,6 @@ class Progress:
     program: Program
 
     def notify(self, event: ProgressEvent) -> None:
-        """Send an event to everything that hears."""
         self.reports.hear(event)
         self.outside(event)
 

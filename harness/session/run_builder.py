@@ -39,7 +39,6 @@ class RunBuilder:
         simulator: RecordingSimulator,
         commands: Sequence[CommandRecord] = (),
     ) -> None:
-        """Take over what was executed and recorded."""
         self._request, self._prepared = request, prepared
         self.record = _recorded(request, prepared, execution, simulator, commands)
         self.resolved = ""

@@ -125,7 +125,6 @@ def with_advice(failure: PlanningFailed, advice: str, more: str = "") -> Plannin
     """The failure with advice that can be followed in the step that it is reported for.
 
     Args:
-        failure: The failure of the planner.
         advice: What to do; empty where nothing is known.
         more: What is added to the message.
     """

@@ -36,7 +36,6 @@ class Tracker(Plugin, ABC):
         """Meet an object, move with it while the fingers close, lift it, verify the grasp.
 
         Args:
-            grasp: The grasp, with the name of the object.
             lift: The straight move after it.
             choose: Chooses the approach to the object where the cell expects it.
             cell: The cell with the object.
@@ -53,10 +52,8 @@ class Tracker(Plugin, ABC):
         """Lower an object at the speed of what is under it, open, go back, verify.
 
         Args:
-            name: The object that is held.
             targets: T_world_object of each pose at which it may be let go.
             retreat: The length of the retreat along the gripper [m].
-            group: The name of the planning group.
             cell: The cell with the surface under the places.
 
         Raises:

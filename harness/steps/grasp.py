@@ -128,7 +128,6 @@ def check_graspable(name: str, at: At, mode: str, *, by_all_cups: bool) -> None:
 
 
 def _missed(name: str, empty: list[str]) -> str:
-    """Which side misses."""
     sides = " and ".join(f"the {side} finger" for side in empty)
     return f"{sides} did not touch '{name}' when the gripper closed"
 
@@ -170,7 +169,6 @@ def _depth(touch: Touch) -> str:
 
 
 def _offset(name: str, cell: Cell) -> str:
-    """How an object stands to the TCP."""
     tcp = cell.frame(cell.description.tcp_link)
     x, y, z = tcp.inverse().apply(cell.frame(name).translation) * 1e3
     return f"its origin stands ({x:.1f}, {y:.1f}, {z:.1f}) mm from the TCP, in the TCP's axes"

@@ -25,7 +25,6 @@ class Lin(LineFields, Step):
         check_goal(self, self.group, at)
 
     def execute(self, cell: Cell) -> None:
-        """Move the link on a straight line to the goal, turning at an even rate."""
         cell.sync_scene()
         group = group_of(cell, self.group)
         goal = resolve_goal(self, group, cell)

@@ -33,5 +33,4 @@ class MoveObject(Step):
         at.check_pose(self.pose, "pose")
 
     def execute(self, cell: Cell) -> None:
-        """Put the object somewhere else, at rest, in planning scene and physics."""
         cell.move_in_scene(self.object, cell.world_pose(self.pose))

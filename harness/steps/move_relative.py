@@ -88,7 +88,6 @@ class MoveRelative(Step):
                 at.scope.check_frame(direction.frame, at.key(key, "frame"))
 
     def execute(self, cell: Cell) -> None:
-        """Move the link along the direction, or turn it about the axis, by the given amount."""
         cell.sync_scene()
         cell.refuse_joint_hold(cell.robot.group_joints(group_of(cell, self.group)))
         cell.carry_out(self.plan(cell.planning_start(), cell.current.options, cell))

@@ -40,7 +40,6 @@ class Ptp(GoalFields, Step):
                 )
 
     def execute(self, cell: Cell) -> None:
-        """Move all joints together; a pose goal takes the nearest inverse kinematics solution."""
         cell.sync_scene()
         group = group_of(cell, self.group)
         goal = resolve_goal(self, group, cell)

@@ -20,7 +20,6 @@ def refuse_unwritable_file(file: Path, option: str = "") -> None:
     """Check before anything runs that a file can be written, and the folders above it.
 
     Args:
-        file: A file that need not exist yet.
         option: What a message begins with, such as `--ctrf: `.
 
     Raises:

@@ -45,7 +45,6 @@ class Installation:
 
     @property
     def digest(self) -> str:
-        """A hash of all of it."""
         return hashlib.sha256(repr(to_plain(self)).encode()).hexdigest()
 
 

@@ -31,9 +31,7 @@ class FileCaseSequence(Protocol):
 
     def __getitem__(self, index: int, /) -> Case: ...
 
-    def name(self, index: int) -> str:
-        """The name of a case."""
-        ...
+    def name(self, index: int) -> str: ...
 
     def index_of(self, name: str) -> int | None:
         """The index of the case of a name; None where there is none."""
@@ -74,22 +72,18 @@ class PlannedCase:
 
     @property
     def file(self) -> Path:
-        """The scenario file."""
         return self.of.file
 
     @property
     def header(self) -> ScenarioHeader:
-        """The header of its file."""
         return self.of.header
 
     @property
     def name(self) -> str:
-        """The name of the case."""
         return self.of.cases.name(self.position)
 
     @cached_property
     def case(self) -> Case:
-        """The case with its values."""
         return self.of.cases[self.position]
 
     @property
@@ -105,7 +99,6 @@ class PlannedCase:
 
     @property
     def values(self) -> Mapping[str, Any]:
-        """What varies from case to case."""
         fixed = self.header.variation.fixed
         return {path: fixed.get(path, value) for path, value in self.case.values.items()}
 

@@ -48,9 +48,7 @@ class SuiteRequest(SuiteSelection):
 
     Attributes:
         report_root: Folder for the reports; None writes no reports.
-        page: Whether to write the page of a report.
         hard_cap: Wall time that a case may take [s]; None takes the program's own.
-        hooks: What plug-ins change of the suite.
     """
 
     workers: int = option("-j", metavar="N", default=1, text="run N scenarios side by side")

@@ -26,7 +26,6 @@ class Results(Mapping[int, CaseResult]):
     """
 
     def __init__(self, count: int, stream: Stream | None = None) -> None:
-        """Hold no results yet."""
         self.starts: dict[int, tuple[bool, int]] = {}
         self._stream = stream
         self._kept: dict[int, CaseResult] = {}
@@ -87,5 +86,4 @@ class Results(Mapping[int, CaseResult]):
         return self._stream.entry(self._place(index))
 
     def outcomes(self) -> Iterator[tuple[int, Outcome]]:
-        """Index and outcome of each result."""
         return ((index, OUTCOMES[self._outcomes[index]]) for index in self)

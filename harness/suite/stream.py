@@ -67,7 +67,6 @@ class StreamEntry:
 
     @property
     def line(self) -> bytes:
-        """The entry as a line of the file."""
         content = {
             "format": self.format,
             "key": self.key,

@@ -34,8 +34,6 @@ class SuiteRun:
     """Runs planned cases and keeps their results.
 
     Attributes:
-        plan: The cases, in file order.
-        files: The scenario files that were found.
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
         results: The results by index into `jobs`; of samples, those that count.
         resumed: How many results are from an earlier run.
@@ -73,8 +71,6 @@ class SuiteRun:
 
         Args:
             server: Open, unless the cases run in this process.
-            watch: Called with the events of running cases.
-            on_result: Called with the result of each case that ends.
 
         Raises:
             HarnessError: The stream cannot be written.
@@ -102,7 +98,6 @@ class SuiteRun:
         self.results.keep(index, result, place)
 
     def read_from(self, stream: Stream) -> None:
-        """Take results from a stream."""
         self._stream = stream
         self.results = Results(len(self.jobs), stream)
 
@@ -218,7 +213,6 @@ class SuiteRun:
         return SuiteCase(result, values, header.tags, header.verifies)
 
     def failures(self) -> Iterator[CaseResult]:
-        """The results that did not pass."""
         return (self.results[i] for i, outcome in self.results.outcomes() if outcome != "passed")
 
     def repetitions(self) -> list[list[CaseResult]]:
@@ -246,7 +240,6 @@ class SuiteRun:
 
     @property
     def exit_code(self) -> int:
-        """The exit code of the command."""
         if self.is_interrupted:
             return INTERRUPTED_EXIT_CODE
         return exit_code(["error"] if self.missing_parts else [self.outcome])

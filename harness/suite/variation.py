@@ -161,8 +161,6 @@ class Redraw:
     """Draws a sample again.
 
     Attributes:
-        case: The parametrised case it is a sample of.
-        index: The number of the sample.
         base: The seed of all samples.
         fixed: Overrides that no draw changes.
     """
@@ -186,7 +184,6 @@ class Cases(LazySequence[Case]):
         """Remember what the cases follow from.
 
         Args:
-            base: The seed of all samples.
             samples: The number of samples of each parametrised case; 0: none are drawn.
         """
         self._variation = variation

@@ -195,7 +195,6 @@ class WarmServer:
                 yield _ended(job, running)
 
     def close(self) -> None:
-        """End every job and the server."""
         if self._process is None or self._control is None:
             return
         self._control.close()

@@ -30,13 +30,11 @@ class CheckCommand(Command):
     reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
-        """Add the options of `harness check`."""
         add_paths(command)
         add_seed(command)
         add_format(command, sarif="one document for code scanning, SARIF 2.1.0")
 
     def run(self, arguments: argparse.Namespace) -> int:
-        """Check files; problems of all of them are reported."""
         files = discover(arguments.paths)
         from harness.reporting.sarif import sarif_document
         from harness.reporting.suite.cause import short_problem

@@ -21,7 +21,6 @@ class ListCommand(Command):
     group: ClassVar[str] = SETUP
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
-        """Add the options of `harness list`."""
         text = "what to list; without it, how much there is of each kind"
         command.add_argument("kind", choices=tuple(LISTINGS), nargs="?", help=text)
         add_plugin(command)

@@ -58,7 +58,6 @@ class RunCommand(Command):
         self._modes: list[RunMode] = [mode() for mode in registry("run_mode").built_in()]
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
-        """Add the options of `harness run`."""
         add_paths(command)
         add_seed(command)
         add_options(command, SuiteRequest)

@@ -21,7 +21,6 @@ class ViewCommand(Command):
     reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
-        """Add the options of `harness view`."""
         add = command.add_argument
         text = "the run's report folder, or a file in it; append '#t=10.1' to open that moment"
         add("run", metavar="RUN", help=text)
@@ -29,7 +28,6 @@ class ViewCommand(Command):
         add("--no-open", action="store_true", help="print the path of the page and open no browser")
 
     def run(self, arguments: argparse.Namespace) -> int:
-        """Find the page of a run, write it if it is not there, open it."""
         name, mark, place = arguments.run.partition("#")
         page = _page(Path(name), is_rebuilt=arguments.rebuild)
         say(f"{page}{mark}{place}")

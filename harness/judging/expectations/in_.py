@@ -177,7 +177,6 @@ def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:
     """1 where a shape is under a point of the object's frame or all around it, else 0; NaN unknown.
 
     Args:
-        record: The record of the container.
         points: The points in the container's frame [m], shape (n, 3).
 
     Raises:

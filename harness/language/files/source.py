@@ -34,11 +34,9 @@ class Source:
 
     @classmethod
     def of_text(cls, path: str, text: str) -> Source:
-        """The source of a file with this text."""
         return cls(path, tuple(LINE_BREAK.split(text)))
 
     def own_lines(self) -> tuple[str, ...]:
-        """The lines that are of the file itself."""
         return self.lines[: len(self.lines) - len(self.others)]
 
     def origin(self, number: int) -> tuple[str, int]:

@@ -25,7 +25,6 @@ class XmlElement:
 
     Attributes:
         tag: The tag with its prefix as written; namespaces are not resolved.
-        place: The place of its start tag.
         text: All of its own character data.
     """
 
@@ -36,11 +35,9 @@ class XmlElement:
     text: str = ""
 
     def find(self, tag: str) -> XmlElement | None:
-        """The first child of a tag."""
         return next((child for child in self.children if child.tag == tag), None)
 
     def findall(self, tag: str) -> list[XmlElement]:
-        """All children of a tag."""
         return [child for child in self.children if child.tag == tag]
 
     def walk(self) -> Iterator[XmlElement]:
@@ -50,7 +47,6 @@ class XmlElement:
             yield from child.walk()
 
     def get(self, name: str, default: str = "") -> str:
-        """An attribute, or a default."""
         return self.attributes.get(name, default)
 
     def need(self, name: str) -> str:
@@ -67,7 +63,6 @@ class XmlElement:
         return name
 
     def problem(self, message: str, hint: str = "", *, at: str = "") -> Problem:
-        """A mistake at the element, or at the value of its attribute `at`."""
         return (self.place_of(at) if at else self.place).problem(message, hint)
 
     def refuse(self, message: str, hint: str = "", *, at: str = "") -> NoReturn:

@@ -20,7 +20,6 @@ def read_case_keys(entries: Mapping[str, Entry], problems: list[Problem]) -> Cas
 
     Args:
         entries: The values of these keys, parameters and options applied; other keys are ignored.
-        problems: Problems that were found in them.
 
     Raises:
         ValueError, SpecError: They have a mistake, which reading the whole file reports.

@@ -40,7 +40,6 @@ class Loaded(Generic[M]):
     """A file's model, and the way back to the file.
 
     Attributes:
-        text: The text as it was read.
         lines: The line and column of each field of the model.
         written: The file's values in its own short forms, parameters and overrides applied.
         notes: What the file may say and probably does not intend.
@@ -59,7 +58,6 @@ class LoadedScenario(Loaded[Scenario]):
 
     @property
     def scenario(self) -> Scenario:
-        """What the file says."""
         return self.model
 
     @property
@@ -74,7 +72,6 @@ class LoadedWorld(Loaded[WorldSpec]):
 
     @property
     def world(self) -> WorldSpec:
-        """What the file says."""
         return self.model
 
 

@@ -27,7 +27,6 @@ def resolved_text(
     """The scenario as YAML in the file's own short forms; loads to an equal scenario.
 
     Args:
-        loaded: The scenario that was loaded.
         step_seeds: Path of a step in the model -> its seed, written above it as a comment.
         folder: Where the text will be saved; relative paths are written as from there (only
             then do they, alone, differ from the file's).

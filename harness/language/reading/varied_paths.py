@@ -116,7 +116,6 @@ def values_of_case(root: Located, given: Mapping[str, str]) -> dict[str, Overrid
     """Values of a case that the file itself gives, so that mistakes are reported there.
 
     Args:
-        root: The file as written.
         given: Dotted path -> value as YAML.
     """
     found: dict[str, Override] = {}

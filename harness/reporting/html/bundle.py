@@ -75,7 +75,6 @@ def rendered(file: Path, *, script: str, style: str, **content: object) -> str:
 
     Args:
         file: The template; it includes those of its folder, or of the run page.
-        **content: What the template shows.
     """
     from markupsafe import Markup
 

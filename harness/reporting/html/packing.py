@@ -90,7 +90,6 @@ def thin(columns: FloatArray, stretches: int) -> Thinned:
 
     Args:
         columns: The series as rows, shape (series, samples).
-        stretches: The approximate number of stretches.
     """
     series, samples = columns.shape
     size = max(2, -(-samples // stretches))

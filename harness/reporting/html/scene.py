@@ -52,9 +52,6 @@ def pack_scene(
     """Bodies, meshes, frames and what the first view holds.
 
     Args:
-        run: The run that is shown.
-        meshes: The triangles of its mesh files.
-        packer: Takes poses and meshes.
         framing: What a view holds besides the arm and what it touched.
     """
     step, samples = frame_samples(run.signals.times)

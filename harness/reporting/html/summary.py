@@ -32,7 +32,6 @@ class SummaryPicture:
 
     @property
     def encoded(self) -> str:
-        """The bytes in base64."""
         return base64.b64encode(self.data).decode()
 
 

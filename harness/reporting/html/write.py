@@ -124,7 +124,6 @@ def write_page(folder: Path, stored: StoredRun | None = None, begun: Page | None
     """Write `report.html` into a run's folder, from the saved run if none is given.
 
     Args:
-        folder: The folder of the run, with its pictures.
         stored: The run that is shown; read from the folder if none is given.
         begun: Its page, which was begun before.
 

@@ -29,7 +29,6 @@ class HtmlReporter(Reporter):
             self._page = Page(event.run, event.verdicts)
 
     def write(self, folder: Path, stored: StoredRun) -> None:
-        """Write the page."""
         from harness.reporting.html.write import write_page
 
         write_page(folder, stored, self._page)

@@ -97,10 +97,7 @@ class Columns:
     """Everything that the page and the terminal show of many runs together.
 
     Attributes:
-        outcomes: The number of runs with each outcome.
-        causes: The number of runs with each cause of failure.
         margins: Text and unit of an expectation -> its finite margins, of valid runs that vary.
-        listed: Indices of the runs that are listed.
         numbers: Indices among all runs of the valid runs that vary; the other columns are of these.
         shares: The worst margin of each as a share of its limit; NaN where there is none.
         groups: Index of each run's cause among `causes`; -1: passed.
@@ -132,7 +129,6 @@ class Columns:
             self.add(case)
 
     def add(self, case: SuiteCase) -> None:
-        """Read the next case."""
         index, outcome = self.outcomes.total(), case.result.outcome
         self.outcomes[outcome] += 1
         group = PASSED

@@ -52,7 +52,6 @@ class SuiteCase:
 
     @cached_property
     def cause(self) -> Cause | None:
-        """Why it did not pass; None when it passed."""
         return cause_of(self.result)
 
     def link(self, folder: Path) -> str:
@@ -73,7 +72,6 @@ class FailingChange:
     Attributes:
         changes: Path, value in the file and value with which it fails, of each parameter.
         cause: Why it fails, in a line.
-        runs: How many runs failed in this way.
         replays: What each run is, and its case: the file as it is, and the changed one.
     """
 
@@ -90,7 +88,6 @@ class SuiteRecord:
     Attributes:
         outcome: The gravest outcome of all.
         cases: The cases in file order; of samples those that count.
-        rates: The rates of samples.
         is_interrupted: Whether Ctrl-C ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
         title: What the page is called instead of the number of cases that passed.

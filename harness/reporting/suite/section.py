@@ -22,8 +22,6 @@ class SuiteSection(Plugin, ABC):
         """What the template shows; None leaves the section out.
 
         Args:
-            columns: What varies in the cases.
-            cases: The cases of the suite in their order.
             folder: Where the page will stand; links are relative to it.
         """
 

@@ -10,11 +10,7 @@ from harness.reporting.suite.record import SuiteCase, SuiteRecord
 
 
 class SuiteReporter(Plugin, ABC):
-    """Writes one file of a suite, case by case; every suite with files of its own has it.
-
-    Attributes:
-        file: The name of the file in the suite's folder.
-    """
+    """Writes one file of a suite, case by case; every suite with files of its own has it."""
 
     plugin_kind: ClassVar[str] = "suite_reporter"
     file: ClassVar[str] = ""

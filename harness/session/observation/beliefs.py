@@ -20,7 +20,6 @@ def believed_poses(
     Args:
         beliefs: The beliefs of each object, in order of time.
         joint_positions: Recorded, description order, shape (N, n).
-        kinematics: The kinematics of the robot that carries some of them.
     """
     count = len(joint_positions)
     poses: dict[str, FloatArray] = {}

@@ -283,7 +283,6 @@ class MovingBody:
         return np.concatenate([[0.0], np.cumsum(moved)])
 
     def part(self, samples: BoolArray) -> MovingBody:
-        """The same body at some samples only."""
         if samples.all():
             return self
         stretches = None if self.stretches is None else self.stretches[samples]

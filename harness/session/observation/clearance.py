@@ -191,7 +191,6 @@ class _Scene:
         return knots(motion.times, self.objects, self.attachments)
 
     def measured(self, motion: Motion, stretches: IntArray | None = None) -> MeasuredClearance:
-        """Distances at every given sample."""
         found = MeasuredClearance(len(motion.times), only=self.only, stretches=stretches)
         is_of_robot = self.only is None or any(ROBOT in pair for pair in self.only)
         if is_of_robot or any(_during(each, motion).any() for each in self.attachments):

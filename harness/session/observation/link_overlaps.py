@@ -71,7 +71,6 @@ def _with_distances(signals: Signals, key: Pair, nearest: FloatArray, link: int)
     Args:
         key: The names of both bodies.
         nearest: The distances [m], inf where they are not known, shape (N,).
-        link: The link that they are measured from.
     """
     known = signals.clearances.get(key, np.full(len(nearest), signals.clearance_cutoff))
     of_link = signals.clearance_links.get(key, np.full(len(nearest), -1))

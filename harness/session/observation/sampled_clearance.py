@@ -104,7 +104,6 @@ def parts_of(samples: IntArray, dips: FloatArray, count: int) -> tuple[IntArray,
     Args:
         samples: The samples after which bodies move that far, fewer than `count`.
         dips: The length by which a distance may be smaller after each of them [m].
-        count: The number of samples of the run.
     """
     needed = np.ceil(dips / LARGEST_ERROR)
     limits = np.arange(MOST_PARTS, 0, -1)
