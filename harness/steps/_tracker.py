@@ -21,17 +21,20 @@ class Tracker(Plugin, ABC):
 
     plugin_kind: ClassVar[str] = "tracker"
 
+    @staticmethod
     @abstractmethod
-    def execute(self, spec: Step, cell: Cell) -> None:
+    def execute(spec: Step, cell: Cell) -> None:
         """Carry out a step; a motion to where an object is carried ends when the object is there.
 
         Raises:
-            StepFailed: The step cannot be carried out, or the arm cannot be there in time.
+            StepFailed: The step cannot be carried out, the arm cannot be there in time, or the
+                object moved elsewhere by itself.
         """
 
+    @staticmethod
     @abstractmethod
     def pick(
-        self, grasp: Grasp, lift: MoveRelative, choose: Callable[[], ChosenApproach], cell: Cell
+        grasp: Grasp, lift: MoveRelative, choose: Callable[[], ChosenApproach], cell: Cell
     ) -> None:
         """Meet an object, move with it while the fingers close, lift it, verify the grasp.
 
@@ -45,10 +48,9 @@ class Tracker(Plugin, ABC):
             StepFailed: INVALID_OBJECT_NAME, when nothing carries it.
         """
 
+    @staticmethod
     @abstractmethod
-    def place(
-        self, name: str, targets: Sequence[SE3], retreat: float, group: str, cell: Cell
-    ) -> None:
+    def place(name: str, targets: Sequence[SE3], retreat: float, group: str, cell: Cell) -> None:
         """Lower an object at the speed of what is under it, open, go back, verify.
 
         Args:
@@ -68,13 +70,12 @@ def tracker() -> Tracker:
 
 
 def execute(spec: Step, cell: Cell) -> None:
-    """Carry out a step, with a plug-in where it moves an arm and surfaces move.
+    """Carry out a step, with a plug-in where it moves an arm.
 
     Raises:
         StepFailed: It cannot be carried out.
     """
-    is_moving = any(each.obj.surface_motion is not None for each in cell.presence.values())
-    if spec.moves_arm and is_moving and "belt" in registry(Tracker.plugin_kind):
+    if spec.moves_arm and "belt" in registry(Tracker.plugin_kind):
         tracker().execute(spec, cell)
     else:
         spec.execute(cell)

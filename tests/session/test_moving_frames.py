@@ -1,8 +1,12 @@
 """Goals in the frame of an object that a belt carries are met when the arm arrives."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from harness.core.spatial import SE3
 from harness.recording.read_run import read_run
 from tests.running import run_case
 
@@ -60,3 +64,73 @@ def test_a_gripper_closes_on_the_way(tmp_path):
     recorded = run(tmp_path, step=f"parallel: [{{gripper: closed}}, {{{OVER}}}]")
     assert recorded.steps[1].status == "passed"
     assert miss(recorded)[0] < 3e-3
+
+
+BY_THEMSELVES = """scenario: over what moves by itself
+robot: open_manipulator_x
+objects:
+  - name: cabinet
+    static: true
+    box: {size: [0.1, 0.1, 0.02]}
+    pose: {xyz: [0.2, 0.2, 0.01]}
+    joints:
+      - name: part
+        mass: 0.2
+        shapes: [{box: {size: [0.04, 0.04, 0.02]}, pose: {xyz: [0, 0, 0.04]}}]
+        %s
+  - {name: plate, static: true, box: {size: [0.5, 0.3, 0.02]}, pose: {xyz: [0.2, -0.2, 0.03],
+     rpy: [0, %s, 0]}}
+  - {name: ball, sphere: {radius: 2 cm}, mass: 0.05, pose: {xyz: [0.15, -0.2, 0.0625]}}
+steps: [{%s}]
+"""
+DRAWER = "slide: {axis: [0, 1, 0], range: [-0.12, 0.2], start: %s, stiffness: 10, damping: 5}"
+DOOR = (
+    "hinge: {axis: [0, 0, 1], at: [0, 0.1, 0], range: [-90 deg, 90 deg], start: -60 deg,"
+    " stiffness: 0.5, damping: 0.2}"
+)
+GO = "move_to: {position: {frame: %s, xyz: [0, 0, 0.1]}}"
+
+
+def run_by_themselves(folder, joint, tilt, steps):
+    path = folder / "a.scenario.yaml"
+    path.write_text(BY_THEMSELVES % (joint, tilt, steps), encoding="utf-8")
+    run_case(path, report_dir=folder / "run", stills=False, page=False)
+    return read_run(folder / "run").run
+
+
+@pytest.mark.parametrize(
+    ("joint", "tilt", "name"),
+    [
+        (DRAWER % -0.1, 0, "cabinet/part"),
+        (DOOR, 0, "cabinet/part"),
+        (DRAWER % 0, 0.05, "ball"),
+    ],
+)
+def test_what_moved_by_itself_meanwhile_is_missed_by_so_much(joint, tilt, name, tmp_path):
+    run = run_by_themselves(tmp_path, joint, tilt, GO % name)
+    step, poses = run.steps[-1], run.signals.object_poses[name]
+    assert step.error_code == "MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE"
+    end = step.end_index - 1
+    goal = SE3.from_vector(poses[end]).apply(
+        SE3.from_vector(poses[step.start_index]).inverse().apply(run.signals.tcp_pose[end, :3])
+    )
+    away = 1e3 * np.linalg.norm(goal - run.signals.tcp_pose[end, :3])
+    said = float(re.search(r"the goal was ([0-9.]+) mm", step.message)[1])
+    assert said == pytest.approx(away, abs=1)
+    assert away > 20
+    assert f"t={step.end_time:.3f} s" in step.message
+
+
+def test_what_came_to_rest_before_is_not_missed(tmp_path):
+    steps = f"settle: 1 mm/s, timeout: 9 s}}, {{{GO % 'cabinet/part'}"
+    run = run_by_themselves(tmp_path, DRAWER % -0.1, 0, steps)
+    assert run.steps[-1].status == "passed"
+
+
+def test_what_the_arm_pushes_itself_is_not_missed(tmp_path):
+    lesson = Path("scenarios/contact/01_push_a_crate.scenario.yaml").read_text("utf-8")
+    pose = "{xyz: [0.5, 0.2, 0.12], rpy: [180 deg, 0, 0]}"
+    in_crate = "{frame: crate, xyz: [0, 0, 0.02], rpy: [180 deg, 0, 0]}"
+    path = tmp_path / "a.scenario.yaml"
+    path.write_text(lesson.replace(f"lin: {{pose: {pose}", f"lin: {{pose: {in_crate}"), "utf-8")
+    assert run_case(path, report_dir=None).outcome == "passed"

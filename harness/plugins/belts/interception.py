@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -11,14 +12,15 @@ from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach, with_arm
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
-from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.plugins.belts.closing_time import on_hundredths
 from harness.plugins.belts.ride import LOOK_AHEAD, Ride
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion, TimedLinkMotion
 from harness.recording.explanation import Explanation
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
+from harness.robot.gripper.closing_speed import joint_speed
 
 PACES = (0.5, 0.8, 1.2, 1.8)
 """Durations of the approach that are tried, quickest first [s]."""
@@ -27,6 +29,20 @@ STEP_TIME, STEP_LENGTH = 0.2, 0.05
 """Between the moments that are tried: this long [s], or as long as the object takes so far [m]."""
 
 SPARE = 0.1  # [s], by which the arm is at the start of the approach before the object
+
+
+def closing_time(
+    description: RobotDescription, gripper: Gripper, start: float, goal: float
+) -> float:
+    """The time that the gripper's joint takes from one position to another, in hundredths [s]."""
+    speed = joint_speed(description, gripper)
+    rise = speed / description.joint_by_name[gripper.joint].acceleration
+    return on_hundredths(abs(goal - start) / speed + rise)
+
+
+def on_hundredths(duration: float) -> float:
+    """A duration lengthened to the next hundredth, the period of a trajectory's set points [s]."""
+    return math.ceil(100 * duration - 1e-6) / 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,19 +106,6 @@ def _travel(share: float) -> float:
     return ((share - 3) * share + 2.5) * share**4
 
 
-@dataclass(frozen=True, eq=False)
-class Meeting:
-    """An interception that was found.
-
-    Attributes:
-        company: The motion with the object.
-        chosen: The approach, to the object where it is when the arm begins to move with it.
-    """
-
-    company: Company
-    chosen: ChosenApproach
-
-
 @dataclass(frozen=True)
 class Search:
     """What an interception is searched for.
@@ -122,8 +125,8 @@ class Search:
     choose: Callable[[], ChosenApproach]
 
 
-def find_meeting(ride: Ride, search: Search, cell: Cell) -> Meeting:
-    """The first moment at which the arm can meet an object on its ride.
+def find_meeting(ride: Ride, search: Search, cell: Cell) -> tuple[Company, ChosenApproach]:
+    """The first motion with which the arm can meet an object on its ride, and its approach.
 
     Raises:
         PlanningFailed: There is none before the object leaves the belt; says by how much the arm
@@ -134,19 +137,21 @@ def find_meeting(ride: Ride, search: Search, cell: Cell) -> Meeting:
     begin, ends = 0.0, ride.ends
     while begin + 2 * PACES[0] + search.closing <= ends:
         try:
-            meeting, ready = _meeting_at(begin, ride, search, cell)
+            company, chosen, ready = _meeting_at(begin, ride, search, cell)
         except PlanningFailed as failure:
             failures.append(failure)
             begin += step
             continue
         if ready <= begin:
-            return meeting
+            return company, chosen
         late = min(late, ready - begin)
         begin = max(ready, begin + 0.25 * step) if ride.speed else ready
     raise _missed(ride, search, late, failures)
 
 
-def _meeting_at(begin: float, ride: Ride, search: Search, cell: Cell) -> tuple[Meeting, float]:
+def _meeting_at(
+    begin: float, ride: Ride, search: Search, cell: Cell
+) -> tuple[Company, ChosenApproach, float]:
     """A meeting whose approach begins at a time, and when the arm is ready for it [s].
 
     Raises:
@@ -162,7 +167,7 @@ def _meeting_at(begin: float, ride: Ride, search: Search, cell: Cell) -> tuple[M
         try:
             company, state = _company(begin, pace, waiting, chosen, ride, search, cell)
             company_plan(company, state, search.group, cell)
-            return Meeting(company, chosen), _reach_time(state, search, cell) + SPARE
+            return company, chosen, _reach_time(state, search, cell) + SPARE
         except PlanningFailed as failure:
             last = failure
     raise last
@@ -225,21 +230,17 @@ def divided(plan: MotionPlan, time: float) -> tuple[MotionPlan, MotionPlan]:
     """The parts of a plan before and after one of its set points; the arm moves in between."""
     whole = plan.trajectory
     at = int(np.argmin(np.abs(whole.times - time)))
-    rows = slice(0, at + 1), slice(at, None)
     first, second = (
         replace(
-            plan,
-            trajectory=JointTrajectory(
-                whole.joint_names,
-                whole.times[part] - whole.times[part][0],
-                whole.positions[part],
-                whole.velocities[part],
-                whole.accelerations[part],
-            ),
+            whole,
+            times=whole.times[part] - whole.times[part][0],
+            positions=whole.positions[part],
+            velocities=whole.velocities[part],
+            accelerations=whole.accelerations[part],
         )
-        for part in rows
+        for part in (slice(0, at + 1), slice(at, None))
     )
-    return first, second
+    return replace(plan, trajectory=first), replace(plan, trajectory=second)
 
 
 def _reach_time(state: FloatArray, search: Search, cell: Cell) -> float:

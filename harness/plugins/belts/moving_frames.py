@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from typing import cast
 
+import numpy as np
 from pydantic import BaseModel
 
 from harness.cell.cell import Cell
 from harness.cell.scene_state import StepNotes
 from harness.cell.step import Step
 from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
+from harness.language.poses import Direction
 from harness.plugins.belts.ride import Ride, ride_of
+from harness.ports.simulation import RecordingSimulator
 from harness.recording.explanation import Explanation
+from harness.recording.signals import Signals
 
 SLACK = 0.1  # of a motion's duration, by which the arrival is later than it would have to be
 PLANS = 6  # that are made until one is no longer than the time to its arrival
 LATER = 0.5  # [s], by which a goal is tried later that cannot be reached or has no motion to it
 LONGEST = 30.0  # [s]: farther ahead, slip and rolling make a prediction worthless
+MISSED = (0.005, 0.05)  # [m], [rad] of the goal from where the arm is, and less is no miss
 
 
 def execute_motion(spec: Step, cell: Cell) -> None:
@@ -28,18 +35,75 @@ def execute_motion(spec: Step, cell: Cell) -> None:
     Raises:
         StepFailed: The step cannot be carried out, or the arm cannot be there in time.
     """
-    rides = _rides(spec, cell)
+    frames = [each for each in sorted({*_frames(spec)} & {*cell.presence}) if _is_free(each, cell)]
+    rides = {name: ride for name in frames if (ride := _ride(name, cell)) is not None}
+    stands = {name: cell.measured_pose(name) for name in frames if name not in rides}
+    begin, first = cell.simulator.time, cell.simulator.sample_count - 1
     if not rides:
         spec.execute(cell)
-        return
-    if cell.waiting is not None:
+    elif cell.waiting is not None:
         message = (
             f"a motion to {' and '.join(map(repr, rides))}, which moves, has a time of its own"
         )
         raise StepFailed("INVALID_MOTION_PLAN", f"{message}: it cannot run at once with others")
-    arrival, motion = _meeting(spec, rides, cell)
-    cell.simulator.hold(arrival - motion.duration)
-    cell.simulator.track(motion)
+    else:
+        arrival, motion = _meeting(spec, rides, cell)
+        cell.simulator.hold(arrival - motion.duration)
+        cell.simulator.track(motion)
+    for name in frames:
+        predicted = rides[name].pose if name in rides else lambda _, pose=stands[name]: pose
+        _refuse_miss(name, predicted, begin, first, cell)
+
+
+def _refuse_miss(
+    name: str, predicted: Callable[[float], SE3], begin: float, first: int, cell: Cell
+) -> None:
+    """Fail where an object, in whose frame a goal was, went elsewhere by itself meanwhile.
+
+    Args:
+        name: The object.
+        predicted: T_world_object that the motion was planned for, at a time after its begin [s].
+        begin: When the motion was planned [s].
+        first: The sample at that time.
+        cell: The cell after the motion.
+
+    Raises:
+        StepFailed: MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE; says by how much and when.
+    """
+    tcp = cell.kinematics.link_pose(cell.planning_start(), cell.description.tcp_link)
+
+    def miss(pose: SE3, time: float) -> tuple[float, float]:
+        return tcp.distance_to(pose @ predicted(time - begin).inverse() @ tcp)
+
+    simulator, end = cell.simulator, cell.simulator.time
+    is_met = np.less(miss(cell.measured_pose(name), end), MISSED).all()
+    if is_met or not isinstance(simulator, RecordingSimulator):
+        return
+    signals = simulator.finish(first)
+    last = _first_push(name, signals, cell)
+    pose, time = SE3.from_vector(signals.object_poses[name][last]), float(signals.times[last])
+    away, turn = miss(pose, time)
+    if away > MISSED[0] or turn > MISSED[1]:
+        raise StepFailed(
+            "MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE",
+            f"'{name}', in whose frame the goal is, moved by itself: at t={time:.3f} s the goal was"
+            f" {1e3 * away:.1f} mm and {math.degrees(turn):.1f} deg from where the arm"
+            f" {'arrived' if last == -1 else 'went, and was pushed'}",
+            Explanation(advice="let it come to rest before: `settle`, or `wait: {until: ...}`"),
+        )
+
+
+def _first_push(name: str, signals: Signals, cell: Cell) -> int:
+    """The sample at which something that the arm may have pushed touches an object; -1: none."""
+    free = {each for each, presence in cell.presence.items() if not presence.obj.is_static}
+    pushed, near = set[str](), set(cell.robot.link_names)
+    while near - pushed:
+        pushed |= near
+        pairs = [pair for pair in signals.contact_forces if pushed & {*pair}]
+        near = {each for pair in pairs for each in pair} & free - {name}
+    forces = [f for pair, f in signals.contact_forces.items() if name in pair and pushed & {*pair}]
+    touched = np.any([*forces, np.zeros(len(signals.times))], axis=0)
+    return int(touched.argmax()) if touched.any() else -1
 
 
 def _meeting(spec: Step, rides: Mapping[str, Ride], cell: Cell) -> tuple[float, JointTrajectory]:
@@ -81,19 +145,15 @@ def _missed(refused: PlanningFailed | None, why: str) -> PlanningFailed:
     )
 
 
-def _rides(spec: Step, cell: Cell) -> Mapping[str, Ride]:
-    """What carries the objects in whose frames a step has something, where that moves."""
-    found = {name: _ride(name, cell) for name in sorted({*_frames(spec)} & cell.presence.keys())}
-    return {name: ride for name, ride in found.items() if ride is not None}
+def _is_free(name: str, cell: Cell) -> bool:
+    """Whether an object may move by itself in the physics: it is there, not static and not held."""
+    presence = cell.presence[name]
+    is_physical = presence.is_there and presence.obj.in_simulation and not presence.obj.is_static
+    return is_physical and name in cell.scene.object_names() and name not in cell.scene.attached()
 
 
 def _ride(name: str, cell: Cell) -> Ride | None:
-    """How an object is carried now; None where it stands or is held."""
-    presence = cell.presence[name]
-    is_free = presence.is_there and presence.obj.in_simulation and not presence.obj.is_static
-    is_held = name in cell.scene.attached() or name not in cell.scene.object_names()
-    if not is_free or is_held:
-        return None
+    """How an object is carried now; None where it is not."""
     try:
         ride = ride_of(name, cell)
     except StepFailed:
@@ -102,8 +162,8 @@ def _ride(name: str, cell: Cell) -> Ride | None:
 
 
 def _frames(value: object) -> Iterator[str]:
-    """Every `frame` inside a step."""
-    if isinstance(value, BaseModel):
+    """Every `frame` of a place inside a step; of a direction only the axes count."""
+    if isinstance(value, BaseModel) and not isinstance(value, Direction):
         frame = getattr(value, "frame", None)
         if isinstance(frame, str):
             yield frame

@@ -16,11 +16,10 @@ from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.language.poses import Direction
-from harness.plugins.belts.closing_time import closing_time
 from harness.plugins.belts.interception import (
     Company,
-    Meeting,
     Search,
+    closing_time,
     company_plan,
     divided,
     find_meeting,
@@ -118,11 +117,10 @@ def pick_in_motion(
         choose,
     )
     with cell.unpadded_gripper(name):
-        meeting = _reach(name, ajar, search, cell)
-        company = meeting.company
+        company, chosen = _reach(name, ajar, search, cell)
         plan = company_plan(company, cell.planning_start(), search.group, cell)
         joining, leaving = divided(plan, company.pace)
-        keys = meeting.chosen.approach.at.keys
+        keys = chosen.approach.at.keys
         approach = PlannedLin(**keys, group=lift.group).planned(joining)
         closing = _GraspInMotion(**dict(grasp)).planned(leaving, squeezed, company)
         cell.run_children(
@@ -145,7 +143,7 @@ def _ajar_and_closed(name: str, cell: Cell) -> tuple[float, float]:
     return before, after
 
 
-def _reach(name: str, ajar: float, search: Search, cell: Cell) -> Meeting:
+def _reach(name: str, ajar: float, search: Search, cell: Cell) -> tuple[Company, ChosenApproach]:
     """Go to where the approach begins, and wait there.
 
     Raises:
@@ -154,17 +152,17 @@ def _reach(name: str, ajar: float, search: Search, cell: Cell) -> Meeting:
     wait = 0.0
     for attempt in range(1, MEETINGS + 1):
         began = cell.simulator.time
-        meeting = find_meeting(ride_of(name, cell), search, cell)
+        company, chosen = find_meeting(ride_of(name, cell), search, cell)
         cell.simulator.start_gripper(ajar, cell.gripper.max_effort, cell.gripper.joint)
-        reach = MoveTo(**meeting.chosen.reach_keys, group=search.group)
+        reach = MoveTo(**chosen.reach_keys, group=search.group)
         number = "" if attempt == 1 else f"{attempt}"
         cell.run_children([cell.child(f"reach{number}", reach, f"move_to before {name}")])
-        wait = began + meeting.company.begin - cell.simulator.time
+        wait = began + company.begin - cell.simulator.time
         if wait >= 0:
             if wait > 0:
                 waiting = cell.child(f"wait{number}", Wait(duration=wait), f"wait for {name}")
                 cell.run_children([waiting])
-            return meeting
+            return company, chosen
     raise StepFailed("TIMED_OUT", f"the arm was {-wait:.2f} s late for '{name}'")
 
 

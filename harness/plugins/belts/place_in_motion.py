@@ -12,14 +12,13 @@ from harness.cell.grasping import UP, gripper_axes, position_for_width
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.poses import Pose
-from harness.plugins.belts.closing_time import closing_time
-from harness.plugins.belts.interception import PACES, Company, company_plan, divided
+from harness.plugins.belts.interception import PACES, Company, closing_time, company_plan, divided
 from harness.plugins.belts.pick_in_motion import AJAR, BUILD_UP, PlannedLin
 from harness.plugins.belts.ride import Ride, ride_of
 from harness.ports.goals import PoseGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion
+from harness.steps._approach import world_pose_spec
 from harness.steps.move_to import MoveTo
 from harness.steps.release import Release
 
@@ -63,7 +62,7 @@ def place_in_motion(
             names = cell.description.groups[group].joint_names
             joints = {joint: float(start[cell.description.joint_index[joint]]) for joint in names}
             lowering, leaving = divided(plan, pace)
-            goal = _pose_spec(company.tcp_pose(pace))
+            goal = world_pose_spec(company.tcp_pose(pace))
             lower = PlannedLin(pose=goal, group=group).planned(lowering)
             release = _ReleaseInMotion(object=name).planned(leaving, opened)
             cell.run_children(
@@ -114,10 +113,3 @@ def _start_of(company: Company, group: str, cell: Cell) -> FloatArray:
     request = MotionRequest(group, start, FreeMotion(goal), cell.current.options)
     end = cell.planner.plan(request).trajectory.positions[-1]
     return with_arm(end, start, group, cell)
-
-
-def _pose_spec(pose: SE3) -> Pose:
-    """A pose in the world as a file would write it."""
-    x, y, z = pose.translation.tolist()
-    w, i, j, k = pose.quat_wxyz.tolist()
-    return Pose(xyz=(x, y, z), quat_wxyz=(w, i, j, k))
