@@ -60,6 +60,21 @@ def test_a_search_without_pressing_says_so(tmp_path):
     assert "nothing was pressed meanwhile: put the search inside a `comply`" in str(result)
 
 
+def test_a_peg_that_presses_nothing_finds_no_hole(tmp_path):
+    beside = run_of(tmp_path, 0.16, PRESSING % SEARCH)
+    assert not beside
+    assert "nothing was pressed meanwhile" in beside.step("find").message
+
+
+def test_a_drop_is_measured_from_the_face_that_is_pressed(found, tmp_path):
+    early = run_of(tmp_path, 0.1003, PRESSING.replace("0.25", "0.12") % SEARCH)
+    step = early.step("find")
+    samples = early.run.signals.tcp_pose[step.start_index : step.end_index, 2]
+    drop = step.result.find(Found).drop
+    assert drop == pytest.approx(found.step("find").result.find(Found).drop, abs=2e-4)
+    assert samples[0] - samples[-1] > drop + 1e-4
+
+
 def test_a_hole_that_is_too_far_away_says_so(tmp_path):
     result = run_of(tmp_path, 0.102, PRESSING % SEARCH.replace("0.5 mm", "0.3 mm"))
     assert "the hole is farther away than the `radius`" in str(result)

@@ -42,8 +42,9 @@ class Search(Step):
 
     The link is commanded along an Archimedean spiral across the direction, while something else
     presses it: `comply` with a `wrench` along the direction, around this step. Every 4 ms its
-    measured place is looked at; where it has advanced by `drop` since the beginning, it stops. The
-    step fails when the spiral has grown to `radius` without that.
+    measured place is looked at; where it has advanced by `drop` since it began to press, it stops.
+    The step fails where it advances without having pressed, as next to a block, and when the spiral
+    has grown to `radius`. Over an edge it drops as into a hole; `inserted` expects the hole.
     """
 
     verb: ClassVar[str] = "search"
@@ -122,22 +123,26 @@ class Search(Step):
             The trajectory that was commanded, up to the stop.
 
         Raises:
-            StepFailed: CONTROL_FAILED; it did not drop.
+            StepFailed: CONTROL_FAILED; it did not drop from where it pressed.
         """
-        begin = _measured(cell, link)
-        advances, forces = [0.0], list[float]()
+        begin = surface = _measured(cell, link)
+        advances, forces = [0.0], [0.0]
 
         def notices() -> bool:
-            advances.append(float((_measured(cell, link) - begin) @ axis))
-            forces.append(cell.simulator.force_on_robot(LOOK, cell.held_objects))
+            nonlocal surface
+            force = cell.simulator.force_on_robot(LOOK, cell.held_objects)
+            if max(forces) < PRESSED:
+                surface = begin if force < PRESSED else _measured(cell, link)
+            forces.append(force)
+            advances.append(float((_measured(cell, link) - surface) @ axis))
             return advances[-1] >= self.drop or math.isinf(forces[-1])  # inf: without physics
 
         stopped = follow_until(planned, cell, notices)
-        if stopped is None:
+        if stopped is None or max(forces) < PRESSED:
             raise StepFailed("CONTROL_FAILED", self._failure(max(advances), float(np.mean(forces))))
         way = _measured(cell, link) - begin
         offset = float(np.linalg.norm(way - (way @ axis) * axis))
-        cell.report(Found(offset, float(way @ axis)))
+        cell.report(Found(offset, float((begin + way - surface) @ axis)))
         return stopped[0]
 
     def _failure(self, advance: float, force: float) -> str:
