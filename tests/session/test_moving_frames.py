@@ -121,7 +121,7 @@ def test_what_moved_by_itself_meanwhile_is_missed_by_so_much(joint, tilt, name, 
     assert f"t={step.end_time:.3f} s" in step.message
 
 
-def test_what_came_to_rest_before_is_not_missed(tmp_path):
+def test_what_rests_again_is_not_missed(tmp_path):
     steps = f"settle: 1 mm/s, timeout: 9 s}}, {{{GO % 'cabinet/part'}"
     run = run_by_themselves(tmp_path, DRAWER % -0.1, 0, steps)
     assert run.steps[-1].status == "passed"

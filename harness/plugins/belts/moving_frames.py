@@ -61,7 +61,7 @@ def _refuse_miss(
     """Fail where an object, in whose frame a goal was, went elsewhere by itself meanwhile.
 
     Args:
-        name: The object.
+        name: The name of the object in whose frame a goal is.
         predicted: T_world_object that the motion was planned for, at a time after its begin [s].
         begin: When the motion was planned [s].
         first: The sample at that time.

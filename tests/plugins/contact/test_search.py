@@ -61,9 +61,9 @@ def test_a_search_without_pressing_says_so(tmp_path):
 
 
 def test_a_peg_that_presses_nothing_finds_no_hole(tmp_path):
-    beside = run_of(tmp_path, 0.16, PRESSING % SEARCH)
-    assert not beside
-    assert "nothing was pressed meanwhile" in beside.step("find").message
+    outside = run_of(tmp_path, 0.16, PRESSING % SEARCH)
+    assert not outside
+    assert "nothing was pressed meanwhile" in outside.step("find").message
 
 
 def test_a_drop_is_measured_from_the_face_that_is_pressed(found, tmp_path):
