@@ -43,7 +43,7 @@ class Stills:
 
 
 class StepPictures(Protocol):
-    """Draws the state at the end of every executed step; it is set up before the run is known."""
+    """Draws the state at the end of every executed step."""
 
     def draw(self, run: Run, activity: Activity = ...) -> Stills:
         """Draw a JPEG of every executed step."""

@@ -56,11 +56,6 @@ class Background(Generic[T]):
         writing.close()
         self._function = None  # so that this process does not keep what it refers to
 
-    @property
-    def is_apart(self) -> bool:
-        """Whether another process computes the value."""
-        return self._pid > 0
-
     def has_message(self) -> bool:
         """Whether `result` would hear something at once."""
         return bool(self._pid) and self._reading.poll()
@@ -100,34 +95,6 @@ class Background(Generic[T]):
             os.waitpid(self._pid, 0)
             self._pid = 0
             self._reading.close()
-
-
-class Later(Generic[T]):
-    """A value that is known only after the `Background` that needs it was begun."""
-
-    def __init__(self) -> None:
-        self._content = os.memfd_create("later")
-        self._reading, self._writing = os.pipe()
-
-    def set(self, value: T) -> None:
-        """Send the value, which can be pickled, to the other process."""
-        with os.fdopen(self._content, "wb", closefd=False) as file:
-            pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
-        os.write(self._writing, b"!")
-
-    def wait(self) -> T:
-        """The value, in the other process; EOFError if the process that was to send it is gone."""
-        os.close(self._writing)  # so that reading ends once the other process is gone
-        if not os.read(self._reading, 1):
-            raise EOFError
-        with os.fdopen(self._content, "rb") as file:
-            file.seek(0)
-            return pickle.load(file)
-
-    def close(self) -> None:
-        """Free the memory of the value in this process."""
-        for descriptor in (self._content, self._reading, self._writing):
-            os.close(descriptor)
 
 
 def _compute(function: Callable[[Activity], T], writing: Connection) -> NoReturn:

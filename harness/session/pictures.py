@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
-
-import numpy as np
 
 from harness.cameras.camera_recorder import (
     CameraRecorder,
@@ -18,13 +16,11 @@ from harness.cameras.camera_recorder import (
 )
 from harness.core.activity import Activity
 from harness.core.details import Details
-from harness.core.memory import free_memory
 from harness.recording.drawings import Drawings
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.run import Run
-from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
-from harness.session.background import Background, Later
+from harness.session.background import Background
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
@@ -34,33 +30,24 @@ MOST_EXPLAINED = 100  # most failed steps of which the state that explains them 
 
 
 class Pictures:
-    """The pictures of a run, drawn in other processes while this one executes and observes it."""
+    """The pictures of a run, drawn in other processes while this one observes and judges it."""
 
     _run: Run
 
     def __init__(self, request: RunRequest, prepared: Prepared) -> None:
-        """Begin to set up the drawing of what is certain to be kept, before the run is executed."""
         self._request, self._prepared = request, prepared
-        self._is_kept = request.report_dir is not None and not request.only_failed
         self._captures: Background[Captures] | None = None
         self._drawings: Background[Drawings] | None = None
-        self._later = Later[Run]()
-        if self._is_kept and not prepared.program.videos:
-            drawings = self._begin_drawings(self._later.wait)
-            self._drawings = drawings if drawings.is_apart else None
 
     def executed(self, run: Run) -> None:
         """Begin to draw what the verdicts read, and what is certain to be kept."""
         self._run = run
         self._captures = self._begin_captures()
-        if self._drawings is not None:
-            self._later.set(_shown(run))
-        elif self._is_kept:
-            self._drawings = self._begin_drawings(lambda: _shown(run), run)
+        if self._request.report_dir is not None and not self._request.only_failed:
+            self.begin()
 
     def close(self) -> None:
         """End the processes that are at work."""
-        self._later.close()
         for background in (self._captures, self._drawings):
             if background is not None:
                 background.close()
@@ -71,8 +58,8 @@ class Pictures:
     def begin(self) -> None:
         """Begin to draw what is kept, before this process has threads: then it is not forked."""
         if self._drawings is None:
-            run = self._run
-            self._drawings = self._begin_drawings(lambda: _shown(run), run)
+            draw = partial(_drawings, self._prepared, self._run)
+            self._drawings = Background(partial(draw, are_steps_drawn=self._request.stills))
 
     def drawn(self, activity: Activity) -> Drawings:
         """What is drawn of a run that is kept."""
@@ -88,68 +75,31 @@ class Pictures:
         take = _recorder(prepared).pictures(run, prepared.expectations, is_kept=is_kept)
         return None if take is None else Background(take)
 
-    def _begin_drawings(
-        self, get_shown: Callable[[], Run], run: Run | None = None
-    ) -> Background[Drawings]:
-        draw = partial(_drawings, self._prepared, get_shown, run)
-        return Background(partial(draw, are_steps_drawn=self._request.stills))
-
 
 def _recorder(prepared: Prepared) -> CameraRecorder:
     return camera_recorder(prepared.program.description, prepared.program.all_objects())
 
 
-def _shown(run: Run) -> Run:
-    """The run with the samples and the signals that pictures of its steps show.
-
-    These are the ends of the steps and the samples after them.
-    """
-    signals, none = run.signals, np.empty(0)
-    last = len(signals.times) - 1
-    ends = np.clip([step.end_index - 1 for step in run.steps], 0, last).astype(np.int64)
-    rows = np.unique(np.concatenate([ends, np.minimum(ends + 1, last)]))
-    new_ends = np.searchsorted(rows, ends) + 1
-    moved = signals.times[rows], signals.joint_positions[rows], none, none, none, none, none
-    poses = {name: poses[rows] for name, poses in signals.object_poses.items()}
-    steps = [
-        replace(step, end_index=end) for step, end in zip(run.steps, new_ends.tolist(), strict=True)
-    ]
-    return replace(run, signals=Signals(*moved, object_poses=poses), steps=tuple(steps))
-
-
 def _drawings(
-    prepared: Prepared,
-    get_shown: Callable[[], Run],
-    run: Run | None,
-    activity: Activity,
-    *,
-    are_steps_drawn: bool,
+    prepared: Prepared, run: Run, activity: Activity, *, are_steps_drawn: bool
 ) -> Drawings:
-    """Draw what people look at.
-
-    Args:
-        get_shown: Waits for what pictures of steps show.
-    """
+    """Draw what people look at."""
     from harness.session.observation.visuals import mesh_records
 
-    program = prepared.program
+    files: dict[str, bytes] = {}
+    note, videos = "", ()
     if are_steps_drawn:
+        stills = Stills(note=NOT_DRAWN)
         if has_recorder():
             with closing(_recorder(prepared).step_pictures()) as pictures:
-                free_memory()  # of what a picture is made of
-                shown = get_shown()
-                stills = pictures.draw(shown, activity)
-        else:
-            shown, stills = get_shown(), Stills(note=NOT_DRAWN)
+                stills = pictures.draw(run, activity)
+        note = stills.note
         files = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
-        files |= _failures(prepared, shown, activity)
-        meshes, note = mesh_records(shown), stills.note
-    else:
-        files, meshes, note = {}, mesh_records(get_shown()), ""
-    if run is None or not program.videos:
-        return Drawings(meshes, (), files, note)
-    videos, films = _recorder(prepared).videos(run, program.videos, activity)
-    return Drawings(meshes, videos, {**files, **films}, note)
+        files |= _failures(prepared, run, activity)
+    if prepared.program.videos:
+        videos, films = _recorder(prepared).videos(run, prepared.program.videos, activity)
+        files |= films
+    return Drawings(mesh_records(run), videos, files, note)
 
 
 def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, bytes]:

@@ -4,11 +4,10 @@ import os
 import subprocess
 import sys
 import threading
-from pathlib import Path
 
 from harness.core.activity import unobserved
 from harness.session.background import Background
-from tests.waiting import HANG, wait_for
+from tests.waiting import HANG
 
 
 def in_a_process_without_threads(code):
@@ -67,36 +66,6 @@ def test_a_process_that_has_sent_its_value_is_waited_for_when_it_is_closed():
         "background.close(); background.close()\n"
         "print(os.path.exists(f'/proc/{pid}'))"
     ) == ["1", "True", "False"]
-
-
-LATER = (
-    "from harness.session.background import Later\n"
-    "later = Later()\n"
-    "background = Background(lambda _: (os.getpid(), len(later.wait())))\n"
-)
-
-
-def test_a_process_that_was_begun_before_receives_a_value_later():
-    here, there, length = in_a_process_without_threads(
-        f"{LATER}later.set('x' * 3_000_000)\nprint(os.getpid(), *background.result(unobserved))"
-    )
-    assert here != there
-    assert length == "3000000"
-
-
-def test_a_process_whose_value_never_comes_ends_with_the_one_that_was_to_send_it():
-    state = "open(f'/proc/{background._pid}/stat').read().rpartition(')')[2].split()"
-    pid, when = in_a_process_without_threads(f"{LATER}print(background._pid, {state}[19])")
-
-    def is_over():
-        """Whether it ended; one that was not waited for is a zombie, a later one has its number."""
-        try:
-            state = Path("/proc", pid, "stat").read_text().rpartition(")")[2].split()
-        except OSError:
-            return True
-        return state[0] == "Z" or state[19] != when
-
-    wait_for(is_over)
 
 
 def test_a_process_that_is_closed_ends_at_once():

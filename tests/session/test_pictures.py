@@ -19,7 +19,7 @@ begun, begin = [], Background.__init__
 
 def noted(background, *arguments):
     begin(background, *arguments)
-    begun.append(background.is_apart)
+    begun.append(background._pid > 0)
 
 Background.__init__ = noted
 folder = Path(sys.argv[1]).parent / "run"
@@ -48,14 +48,14 @@ def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_pa
     assert first_line(PROGRAM, file) == "failed [True] 1"
 
 
-BEFORE_OR_HERE = """
+APART_OR_HERE = """
 import sys
 from pathlib import Path
 from harness.session import background, run_case as session
 from harness.session.run_request import RunRequest
 
 found = []
-for name in ("before", "here"):
+for name in ("apart", "here"):
     folder = Path(sys.argv[1]).parent / name
     session.run_case(RunRequest(Path(sys.argv[1]), report_dir=folder, page=False))
     found.append({file.name: file.read_bytes() for file in (folder / "images").iterdir()})
@@ -64,7 +64,7 @@ print(len(found[0]), found[0] == found[1])
 """
 
 
-def test_pictures_are_the_same_from_a_process_begun_before_the_run_and_from_its_own(tmp_path):
+def test_pictures_are_the_same_from_another_process_and_from_the_one_of_the_run(tmp_path):
     steps = "- ptp: {joints: {joint1: 0.5}}\n- ptp: {joints: {joint1: 0.1}}"
     file = file_of(tmp_path, steps, robot="open_manipulator_x", rest="")
-    assert first_line(BEFORE_OR_HERE, file) == "2 True"
+    assert first_line(APART_OR_HERE, file) == "2 True"

@@ -33,7 +33,7 @@ INK = {"passed": (40, 130, 60), "expected error": (40, 130, 60), "failed": RED}
 
 
 class StepRenderer:
-    """Draws the state at the end of every executed step; it is set up before the run is known."""
+    """Draws the state at the end of every executed step."""
 
     def __init__(
         self,
