@@ -28,7 +28,8 @@ class Wait(Step):
 
     With `until`, the step fails after its `timeout`, a minute if that is not given; it may stand
     inside `wait:`, too. The expectation is evaluated every 20 ms of simulated time, and after two
-    seconds whenever the step has become a hundredth longer.
+    seconds whenever the step has become a hundredth longer. Where it holds at once, the report says
+    so among its findings.
     """
 
     short = "duration"

@@ -131,13 +131,16 @@ def overlap_findings(touches: Sequence[Touch]) -> tuple[Finding, ...]:
 
 
 def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
-    """Pairs that may start a motion nearer than planned, such as an object on a table.
+    """Waits that took no time, and pairs that may start a motion nearer than planned.
 
     Task Constructor allows the pair object-support while lifting; here it may stay as near as it
     stood, and no nearer.
     """
     found: list[Finding] = []
     for step in steps:
+        if step.verb == "wait" and step.status == "passed" and step.end_time == step.start_time:
+            message = f"`{step.summary}` held at once, so that nothing was waited for"
+            found.append(Finding("held_at_once", message, step.start_time, step.id))
         lowered = step.explanation.find(LoweredMargins)
         for entry in lowered.lowered_margins if lowered else ():
             first, second = entry.pair
