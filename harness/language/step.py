@@ -50,6 +50,8 @@ class StepFields(SpecModel):
         is_arc: Whether that motion is an arc, which three of its points determine.
         moves_gripper: Whether the step commands the gripper while the arm keeps its place.
         moves_objects: Whether the step lets objects appear, vanish or jump.
+        simulated_only: Why no real robot can carry the step out, and what a user does instead; None
+            where one can. `harness run --robot ros2` refuses it with both.
         keys_inside: Keys next to the verb that may stand inside its content as well.
         results: The types of the parts that the step reports with `cell.report`, besides those of
             the cell's own methods; a saved run is read back with them.
@@ -66,6 +68,7 @@ class StepFields(SpecModel):
     keeps_arm_still: ClassVar[bool] = False
     moves_objects: ClassVar[bool] = False
     detaches_object: ClassVar[bool] = False
+    simulated_only: ClassVar[tuple[str, str] | None] = None
     keys_inside: ClassVar[tuple[str, ...]] = ()
     results: ClassVar[tuple[type[Detail], ...]] = ()
 

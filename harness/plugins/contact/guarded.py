@@ -12,10 +12,12 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 
 LOOK = 0.004
-"""Time between two looks [s].
-
-Controllers of force sensors have cycles of 2 to 10 ms. Physics steps of 1, 2 and 4 ms divide it.
-"""
+"""Time between two looks [s], of 2 to 10 ms that sensors take; 1, 2 and 4 ms divide it."""
+STOPS_AT_CONTACT = (  # what no real robot does here, as `simulated_only`
+    "a trajectory controller is not stopped or moved within milliseconds of a contact",
+    "use a `lin` that ends where the contact is, or the force mode of the robot's driver in a"
+    " program of its own, and judge the recording with `harness grade`",
+)
 GRID = 0.001  # [s], to which the time of braking is rounded up: a step of the physics
 
 

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+
+import numpy as np
 
 from harness.cell.program import Program, ProgramStep
 from harness.cell.step import Step
 from harness.core.errors import SpecError
+from harness.core.geometry import reach
+from harness.core.world import WorldObject
 from harness.session.prepare import Prepared
 from harness.steps.grasp import Grasp
 from harness.steps.gripper import Gripper
-from harness.steps.move_object import MoveObject
 from harness.steps.pick import Pick
 from harness.steps.place import Place
 
 Reason = tuple[str, str]  # why it is impossible, and what the user does instead
 
-_CONTACT: Reason = (
-    "a trajectory controller is not stopped or moved within milliseconds of a contact",
-    "use a `lin` that ends where the contact is, or the force mode of the robot's driver in a"
-    " program of its own, and judge the recording with `harness grade`",
-)
 _CELL: Reason = (
     "a program cannot put objects into the real cell or take them out",
     "write `in: planning` for what only the planner has to know, or leave the step out",
@@ -34,14 +32,6 @@ _AT_ONCE: Reason = (
     "arm and gripper do not move at once there",
     "write the `gripper` step before or after the motion",
 )
-_BY_VERB: dict[str, Reason] = {
-    **dict.fromkeys(("move_until", "comply", "search"), _CONTACT),
-    "conveyor": (
-        "a belt of the real cell is not driven by a scenario",
-        "leave the step out, and let the cell's own controller drive the belt",
-    ),
-    "inject": ("faults are injected into simulated robots alone", "leave the step out"),
-}
 
 
 def refuse_steps(prepared: Prepared) -> None:
@@ -64,23 +54,20 @@ def refuse_steps(prepared: Prepared) -> None:
 
 
 def _refused(program: Program) -> Iterator[tuple[ProgramStep, Reason]]:
-    physical = {obj.name for obj in program.all_objects() if obj.in_simulation}
     for step in program.all_steps():
-        reason = _BY_VERB.get(step.spec.verb) or _reason(step, physical)
+        reason = step.spec.simulated_only or _reason(step, program)
         if reason is not None:
             yield step, reason
 
 
-def _reason(step: ProgramStep, physical: set[str]) -> Reason | None:
-    """Why what a step says is impossible; None where nothing is.
-
-    Args:
-        physical: The names of the objects that are not of the planning scene alone.
-    """
+def _reason(step: ProgramStep, program: Program) -> Reason | None:
+    """Why what a step says is impossible; None where nothing is."""
     spec = step.spec
-    if _changed(spec) & physical:
+    physical = {obj.name: obj for obj in program.all_objects() if obj.in_simulation}
+    if spec.moves_objects and _changed(spec, program) & {*physical}:
         return _CELL
-    if isinstance(spec, Pick | Place) and spec.track:
+    in_motion = isinstance(spec, Pick | Place) and spec.track
+    if in_motion or (spec.moves_arm and _frames(spec.model_dump()) & _carried(physical.values())):
         return _BELT
     if isinstance(spec, Pick | Grasp) and spec.mode == "weld":
         return _WELD
@@ -89,10 +76,35 @@ def _reason(step: ProgramStep, physical: set[str]) -> Reason | None:
     return None
 
 
-def _changed(spec: Step) -> set[str]:
+def _changed(spec: Step, program: Program) -> set[str]:
     """Names of the objects that a step adds, removes or puts elsewhere."""
-    if isinstance(spec, MoveObject):
-        return {spec.object}
-    if spec.verb in ("add_object", "remove_object"):
-        return {getattr(each, "name", each) for each in dict(spec)["objects"]}
-    return set()
+    content = dict(spec)
+    if "object" in content:
+        return {content["object"]}
+    if "objects" in content:
+        return {getattr(each, "name", each) for each in content["objects"]}
+    cleared = program.all_objects() if content.get("world") else program.later_objects.values()
+    return {obj.name for obj in cleared}
+
+
+def _frames(content: object) -> set[str]:
+    """Every `frame` inside a step's content."""
+    if isinstance(content, list | tuple):
+        return {name for each in content for name in _frames(each)}
+    if not isinstance(content, dict):
+        return set()
+    return {str(content.get("frame"))} | _frames([*content.values()])
+
+
+def _carried(objects: Collection[WorldObject]) -> set[str]:
+    """Names of the objects that stand over a belt that runs from the start."""
+    belts = [obj for obj in objects if obj.surface_motion and not obj.surface_motion.is_still]
+    return {
+        obj.name
+        for obj in objects
+        for belt in belts
+        for shape in belt.shapes
+        if not obj.is_static
+        and (half := reach(shape.geometry, np.eye(3))) is not None
+        and (abs((belt.pose @ shape.pose).inverse().apply(obj.pose.translation)) < half)[:2].all()
+    }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from harness.cli.main import main
+from harness.core.errors import SpecError
 from harness.core.spatial import SE3
 from harness.core.wrench_sensor import WrenchSensor
 from harness.plugins.ros.actions import ActionServer
@@ -15,12 +16,15 @@ from harness.plugins.ros.bag.messages import message, vector
 from harness.plugins.ros.bag.wrenches import WRENCH
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.interfaces import FOLLOW, header, stamp
+from harness.plugins.ros.refused_steps import refuse_steps
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wrench_readings import WrenchReadings
 from harness.recording.read_run import read_run
+from harness.session.prepare import prepare
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.test_robot_of_ros2 import HOLD, remote
 from tests.plugins.ros.test_several_arms import arm_joints, cell
+from tests.running import exit_code
 
 STATE = "sensor_msgs/msg/JointState"
 SENSOR = "{model: open_manipulator_x, wrench_sensors: {wrist: {link: link5}}}"
@@ -130,10 +134,19 @@ def test_a_wrist_sensor_of_a_robot_is_tared_recorded_and_judged(tmp_path):
 
 DOWN = "{direction: {xyz: [0, 0, -1]}, force: 5 N, max_distance: 1 cm}"
 BOX = "{name: box, box: {size: [2 cm, 2 cm, 2 cm]}, pose: {xyz: [0.2, 0, 0.01]}%s}"
-BELT = (
-    "objects: [{name: belt, static: true, box: {size: [0.4, 0.1, 0.02]},"
-    " pose: {xyz: [0.3, 0.2, 0.01]}, surface_velocity: 0}]\nexpect: [{always: within_limits}]"
-)
+BELT = """objects:
+- {name: belt, static: true, box: {size: [0.4, 0.1, 0.02]}, pose: {xyz: [0.3, 0.2, 0.01]},
+   surface_velocity: 0.01}
+- {name: can, cylinder: {radius: 1 cm, length: 4 cm}, mass: 0.05, pose: {xyz: [0.2, 0.2, 0.04]}}
+- name: cabinet
+  static: true
+  box: {size: [0.1, 0.1, 0.02]}
+  pose: {xyz: [0.2, -0.2, 0.01]}
+  joints:
+  - {name: drawer, slide: {axis: [0, 1, 0], range: [0, 0.1]}, mass: 0.1,
+     shapes: [{name: handle, box: {size: [0.02, 0.02, 0.02]}, pose: {xyz: [0, 0, 0.05]}}]}
+expect: [{always: within_limits}]
+"""
 
 
 @pytest.mark.parametrize(
@@ -145,6 +158,12 @@ BELT = (
         (f"- add_object: {BOX % ''}", 4, "add_object"),
         ("- inject: {sensor_noise: 0.001}", 4, "inject"),
         ("- parallel: [{gripper: open}, {ptp: {joints: {joint1: 0.2}}}]", 4, "parallel"),
+        ("- pick: {object: can, mode: weld}", 4, "pick"),
+        ("- gripper: open\n- grasp: {object: can, mode: weld}", 5, "grasp"),
+        ("- pick: {object: can, track: true}", 4, "pick"),
+        ("- clear_objects: {world: true}", 4, "clear_objects"),
+        ("- move_to: {position: {frame: can, xyz: [0, 0, 0.06]}}", 4, "move_to"),
+        ("- lin: {position: {frame: can, xyz: [0, 0, 0.06]}}", 4, "lin"),
     ],
 )
 def test_what_no_robot_can_do_is_refused_at_its_line(tmp_path, capsys, steps, line, word):
@@ -156,6 +175,46 @@ def test_what_no_robot_can_do_is_refused_at_its_line(tmp_path, capsys, steps, li
     assert f"scenario.yaml:{line}:" in said
     assert f"`{word}` is not possible on a ROS 2 robot: " in said
     assert "without `--robot ros2` the step is simulated" in said
+
+
+APPLAUD = """
+from typing import ClassVar
+from harness.cell.step import Step
+
+class Applaud(Step):
+    "Applaud."
+
+    verb: ClassVar[str] = "applaud"
+    simulated_only = "its hands are full", "applaud yourself"
+
+    def execute(self, cell):
+        pass
+"""
+
+
+def test_a_step_of_a_package_says_itself_that_no_robot_can_do_it(tmp_path, capsys):
+    (tmp_path / "applause.py").write_text(APPLAUD, encoding="utf-8")
+    plan = scenario(tmp_path, "- applaud: {}", BELT)
+    options = ["--robot", "ros2", "--yes", "--no-report", "--plugin", str(tmp_path / "applause.py")]
+    assert exit_code("run", plan, *options) == 2
+    said = " ".join("".join(capsys.readouterr()).replace("|", " ").split())
+    assert "`applaud` is not possible on a ROS 2 robot: its hands are full" in said
+    assert "applaud yourself; without `--robot ros2` the step is simulated" in said
+
+
+def test_a_drawer_of_a_real_cell_is_not_opened(tmp_path):
+    robot = "{model: ur5e, gripper: rh_p12_rn_a}"
+    plan = scenario(tmp_path, "- open: {object: cabinet, to: 2 cm}", BELT, robot=robot)
+    with pytest.raises(SpecError, match="where a door or drawer stands is not measured there"):
+        refuse_steps(prepare(plan))
+
+
+def test_what_stands_next_to_a_belt_is_a_goal(tmp_path):
+    steps = "- move_to: {position: {frame: can, xyz: [0, 0, 0.06]}}\n- clear_objects: {}"
+    elsewhere = BELT.replace("[0.2, 0.2, 0.04]", "[0.2, 0.1, 0.02]")
+    refuse_steps(prepare(scenario(tmp_path, steps, elsewhere)))
+    with pytest.raises(SpecError, match="meet a moving object"):
+        refuse_steps(prepare(scenario(tmp_path, steps, BELT)))
 
 
 def test_objects_of_the_planning_scene_alone_are_not_refused(tmp_path):

@@ -40,6 +40,10 @@ class Conveyor(Step):
     verb: ClassVar[str] = "conveyor"
     plans: ClassVar[bool] = False
     synonyms = ("belt", "turntable")
+    simulated_only = (
+        "a belt of the real cell is not driven by a scenario",
+        "leave the step out, and let the cell's own controller drive the belt",
+    )
     some_of = ("velocity", "rotation")
     keeps_arm_still: ClassVar[bool] = True
     results = (SurfaceChange,)

@@ -20,6 +20,7 @@ from harness.language.files.source import Loc
 from harness.language.step import AnyStep, Block
 from harness.plugins.contact.axes import AXES, WORDS, DampingAxes, StiffnessAxes, WrenchAxes
 from harness.plugins.contact.compliance import CartesianCompliance, Compliance
+from harness.plugins.contact.guarded import STOPS_AT_CONTACT
 from harness.plugins.contact.reach import Postures
 
 
@@ -54,6 +55,7 @@ class Comply(Step):
     verb: ClassVar[str] = "comply"
     plans: ClassVar[bool] = False
     synonyms = ("impedance", "compliance", "force_mode")
+    simulated_only = STOPS_AT_CONTACT
     some_of = ("stiffness", "wrench")
     results = (Yielded,)
 

@@ -19,7 +19,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.language.base import Force, LinearVelocity, Name, PositiveLength, Torque
 from harness.language.poses import Direction
-from harness.plugins.contact.guarded import LOOK, follow_until
+from harness.plugins.contact.guarded import LOOK, STOPS_AT_CONTACT, follow_until
 from harness.plugins.contact.sensors import check_sensor, sensor_of
 from harness.ports.motion_planning import MotionRequest
 from harness.ports.motions import CartesianLimits, RelativeMotion
@@ -59,6 +59,7 @@ class MoveUntil(Step):
 
     verb: ClassVar[str] = "move_until"
     synonyms = ("guarded_move", "move_until_contact", "touch")
+    simulated_only = STOPS_AT_CONTACT
     moves_arm: ClassVar[bool] = True
     one_of = ("force", "torque", "contact")
     results = (GuardedMove,)

@@ -20,7 +20,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.language.base import LinearVelocity, Name, PositiveLength
 from harness.language.poses import Direction
-from harness.plugins.contact.guarded import LOOK, follow_until
+from harness.plugins.contact.guarded import LOOK, STOPS_AT_CONTACT, follow_until
 from harness.ports.motions import TimedLinkMotion
 
 SHORTEST_RAMP = 0.1  # [s], in which the link gets to its speed along the spiral, and to rest
@@ -49,6 +49,7 @@ class Search(Step):
 
     verb: ClassVar[str] = "search"
     synonyms = ("spiral", "spiral_search", "find_hole")
+    simulated_only = STOPS_AT_CONTACT
     moves_arm: ClassVar[bool] = True
     results = (Found,)
 

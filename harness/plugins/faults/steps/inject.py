@@ -26,6 +26,7 @@ class Inject(Step):
 
     verb: ClassVar[str] = "inject"
     results = (InjectedFaults,)
+    simulated_only = "faults are injected into simulated robots alone", "leave the step out"
     goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"push_duration": ("push",)}
 
     friction: dict[Name, Annotated[Number, Field(ge=0, le=100)]] | None = Field(
