@@ -86,14 +86,17 @@ class GripperDrive:
                 stalled = travel < STALL_SPEED * self._speed * STALL_TIME
         simulator.command(whole.positions[-1])
         reached = self._miss(position) <= GOAL_TOLERANCE * self._range
+        forces, objects = self._forces(), simulator.physics.objects
         return GripperResult(
             position=float(simulator.joint_positions()[self._joint]),
             effort=float(self._recording.actuator_efforts()[self.actuator]),
             stalled=stalled and not reached,
             reached_goal=reached,
-            contacts=self._contacts(),
+            contacts={
+                side: tuple(sorted(pressed.keys() & objects)) for side, pressed in forces.items()
+            },
             between=self._between(),
-            forces=self._forces(),
+            forces=forces,
             unsealed=self._unsealed(),
         )
 
@@ -107,23 +110,6 @@ class GripperDrive:
 
     def _miss(self, position: float) -> float:
         return abs(float(self._simulator.joint_positions()[self._joint]) - position)
-
-    def _contacts(self) -> dict[str, tuple[str, ...]]:
-        last = self._recording.count
-        touching = self._recording.contacts(last - 1, last)
-        objects = self._simulator.physics.objects
-        return {
-            side: tuple(
-                sorted(
-                    {
-                        second
-                        for (first, second), force in touching.items()
-                        if first in links and second in objects and force[0] > 0
-                    }
-                )
-            )
-            for side, links in self._gripper.sides.items()
-        }
 
     def _forces(self) -> dict[str, dict[str, float]]:
         last = self._recording.count

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -83,23 +84,23 @@ class JointDrive:
         Raises:
             StepFailed: CONTROL_FAILED; the controller raised an error, or its answer is unusable.
         """
-        efforts = _Efforts(self._efforts, points)
+
+        @cache  # once, and only where they are requested
+        def efforts() -> FloatArray:
+            return self._efforts(points.positions, points.velocities, points.accelerations)
+
         if len(self.arm):
             answer = self._answer(self._request(points, efforts, noise), len(points))
             self._set_servos(answer)
             whole = np.zeros_like(points.positions)
             whole[:, self.arm] = answer.efforts
             if len(self._hand):
-                whole[:, self._hand] = efforts.of_set_points()[:, self._hand]
+                whole[:, self._hand] = efforts()[:, self._hand]
         else:
-            whole = efforts.of_set_points()
+            whole = efforts()
         gain = np.where(self._stiffness > 0, self._stiffness, 1.0)
         lead = self._damping / gain
         return self.position_share * points.positions + lead * points.velocities + whole / gain
-
-    def copy(self) -> JointController:
-        """The controller with the state that it has now."""
-        return deepcopy(self.controller)
 
     def restore(self, controller: JointController) -> None:
         """Go on with a copy of a controller; the model's servos have been restored already."""
@@ -120,7 +121,7 @@ class JointDrive:
         )
 
     def _request(
-        self, points: SetPoints, efforts: _Efforts, noise: FloatArray | None
+        self, points: SetPoints, efforts: Callable[[], FloatArray], noise: FloatArray | None
     ) -> ControlRequest:
         arm, physics = self.arm, self._physics
         measured = self._data.qpos[physics.qpos][physics.actuated]
@@ -159,7 +160,7 @@ class JointDrive:
             stiffness=physics.servos.stiffness[arm],
             damping=physics.servos.damping[arm],
             effort_limits=physics.servos.effort[arm],
-            feed_forward=lambda: efforts.of_set_points()[:, arm],
+            feed_forward=lambda: efforts()[:, arm],
             inverse_dynamics=inverse_dynamics,
             link_motion=link_motion,
             inertia=inertia,
@@ -204,21 +205,6 @@ class JointDrive:
         model.actuator_gainprm[arm, 0] = np.where(stiffness > 0, stiffness, 1.0)
         model.actuator_biasprm[arm, 1] = -stiffness
         model.actuator_biasprm[arm, 2] = -damping
-
-
-class _Efforts:
-    """Efforts that set points take, computed once, when they are first requested."""
-
-    def __init__(self, efforts: Callable[..., FloatArray], points: SetPoints) -> None:
-        self._compute, self._points = efforts, points
-        self._known: FloatArray | None = None
-
-    def of_set_points(self) -> FloatArray:
-        """Efforts at the set points, shape (N + 1, m)."""
-        if self._known is None:
-            points = self._points
-            self._known = self._compute(points.positions, points.velocities, points.accelerations)
-        return self._known
 
 
 def _shaped(answer: ControlResult, rows: int, joints: int) -> ControlResult:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from copy import deepcopy
 
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
@@ -15,12 +16,8 @@ from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import UnrestFailure
 from harness.recording.motion import Motion
 from harness.recording.signals import Signals
-from harness.simulation.snapshot import (
-    PhysicsState,
-    SimulatorCommand,
-    load_state,
-    saved_state,
-)
+from harness.simulation.snapshot import PhysicsState, changed_arrays, load_state
+from harness.simulation.step_state import step_state
 from harness.simulation.trajectory_tracking import SETTLE_EVERY, TrajectoryTracking
 from harness.simulation.wrench_sensors import Tare
 
@@ -162,29 +159,29 @@ class MujocoSimulator(TrajectoryTracking):
 
     def snapshot(self) -> PhysicsState:
         """Everything that decides how the run continues."""
-        command = SimulatorCommand(
+        return PhysicsState(
+            step_state(self._model, self._data),
+            changed_arrays(self._model),
+            self.sample_count,
             self._command.copy(),
             self._control.copy(),
             dict(self._grips),
             {joint: gripper.pending for joint, gripper in self._grippers.items()},
-            self._drive.copy(),
-        )
-        history, faults = self._objects.history, self.faults.state()
-        surfaces = self._surfaces.history
-        return saved_state(
-            self._model, self._data, command, self.sample_count, history, faults, surfaces
+            deepcopy(self._drive.controller),
+            self.faults.state(),
+            deepcopy(self._objects.log),
+            deepcopy(self._surfaces.log),
         )
 
     def restore(self, state: PhysicsState) -> None:
         """Go back to a snapshot of this simulator; later samples are forgotten."""
         load_state(self._model, self._data, state)
-        command = state.command
-        self._command, self._control = command.positions.copy(), command.control.copy()
-        self._grips = dict(command.grips)
-        self._drive.restore(command.controller)
+        self._command, self._control = state.command.copy(), state.control.copy()
+        self._grips = dict(state.grips)
+        self._drive.restore(state.controller)
         for joint, gripper in self._grippers.items():
-            gripper.pending = command.pending[joint]
-        self._objects.history = state.history
+            gripper.pending = state.pending[joint]
+        self._objects.log = deepcopy(dict(state.objects))
         self.faults.restore(state.faults)
-        self._surfaces.history = state.surfaces
+        self._surfaces.log = deepcopy(dict(state.surfaces))
         self._recording.rewind(state.samples)

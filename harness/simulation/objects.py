@@ -19,7 +19,11 @@ SMALLEST_OVERLAP = 1e-4  # Depth above which two bodies overlap; resting objects
 
 
 class Objects:
-    """The presence and poses of objects, with the history that reconstructs every sample."""
+    """The presence and poses of objects, with the history that reconstructs every sample.
+
+    Attributes:
+        log: Since which samples each object stands where it was put; None: it is absent.
+    """
 
     def __init__(
         self,
@@ -31,19 +35,10 @@ class Objects:
         self._physics = physics
         self._data = data
         self._recording = recording
-        self._log: dict[str, list[tuple[int, FloatArray | None]]] = {
+        self.log: dict[str, list[tuple[int, FloatArray | None]]] = {
             name: [(0, self._pose(place) if name in present else None)]
             for name, place in physics.objects.items()
         }
-
-    @property
-    def history(self) -> dict[str, list[tuple[int, FloatArray | None]]]:
-        """Since which samples each object stands where it was put; None: it is absent."""
-        return {name: list(entries) for name, entries in self._log.items()}
-
-    @history.setter
-    def history(self, history: dict[str, list[tuple[int, FloatArray | None]]]) -> None:
-        self._log = {name: list(entries) for name, entries in history.items()}
 
     def pose(self, name: str) -> SE3:
         """The current T_world_object."""
@@ -59,13 +54,13 @@ class Objects:
         self.unweld(name)
         set_presence(self._physics.model, self._physics.objects[name], present=False)
         self._place(name, self._physics.objects[name].parking)
-        self._log[name].append((self._recording.count, None))
+        self.log[name].append((self._recording.count, None))
 
     def move(self, name: str, pose: SE3) -> None:
         """Place an object at T_world_object, at rest."""
         self.unweld(name)
         self._place(name, pose.as_vector())
-        self._log[name].append((self._recording.count, pose.as_vector()))
+        self.log[name].append((self._recording.count, pose.as_vector()))
 
     def weld(self, name: str, link: str) -> None:
         """Fix a free object to a link at their current poses."""
@@ -94,7 +89,7 @@ class Objects:
         count = self._recording.count
         poses: dict[str, FloatArray] = {}
         for name, place in self._physics.objects.items():
-            log = self._log[name]
+            log = self.log[name]
             moves = place.qpos >= 0
             rows = self._recording.poses(place, first) if moves else np.empty((count - first, 7))
             for (begin, pose), (end, _) in zip(log, [*log[1:], (count, None)], strict=True):
@@ -111,7 +106,7 @@ class Objects:
         return {
             name: self._pose(place)
             for name, place in self._physics.objects.items()
-            if self._log[name][-1][1] is not None
+            if self.log[name][-1][1] is not None
         }
 
     def _pose(self, place: ObjectPlace) -> FloatArray:

@@ -14,7 +14,7 @@ from harness.core.surface_motion import SurfaceMotion
 from harness.core.types import FloatArray
 from harness.ports.joint_control import JointController
 from harness.simulation.set_points import SetPoints
-from harness.simulation.step_state import StepState, refresh, set_step_state, step_state
+from harness.simulation.step_state import StepState, refresh, set_step_state
 
 CHANGED_IN_PLACE = (
     "geom_contype",
@@ -38,60 +38,41 @@ CHANGED_IN_PLACE = (
 )
 """Arrays of the model that objects, surfaces, welds, grips and faults write to during a run."""
 
-History = Mapping[str, list[tuple[int, FloatArray | None]]]
-Surfaces = Mapping[str, list[tuple[int, SurfaceMotion]]]
-
-
-@dataclass(frozen=True, eq=False)
-class SimulatorCommand:
-    """What is commanded to the robot.
-
-    Attributes:
-        positions: Set points of the actuated joints, shape (m,).
-        control: Inputs of the servos, shape (m,).
-        pending: Set points of grippers that set out with the next motion, by joint.
-    """
-
-    positions: FloatArray
-    control: FloatArray
-    grips: Mapping[int, float]
-    pending: Mapping[str, SetPoints | None]
-    controller: JointController
-
 
 @dataclass(frozen=True, eq=False)
 class PhysicsState:
-    """A snapshot of a simulator.
+    """A snapshot of a simulator: copies of all that decides how the run continues.
 
     Attributes:
+        step: The state that the next step follows from.
         model: Arrays of the model that change during a run, by name.
-        history: Since when each object stands where it was put.
+        samples: The number of samples recorded so far.
+        command: Set points of the actuated joints, shape (m,).
+        control: Inputs of the servos, shape (m,).
+        grips: Effort limits of grippers, by actuator.
+        pending: Set points of grippers that set out with the next motion, by joint.
+        controller: The joint controller, with its state.
+        faults: The state of the active faults.
+        objects: Since which samples each object stands where it was put; None: it is absent.
         surfaces: Since which samples the surface of each belt moves how.
     """
 
     step: StepState
     model: Mapping[str, Any]
-    command: SimulatorCommand
     samples: int
-    history: History
+    command: FloatArray
+    control: FloatArray
+    grips: Mapping[int, float]
+    pending: Mapping[str, SetPoints | None]
+    controller: JointController
     faults: Mapping[str, Any]
-    surfaces: Surfaces
+    objects: Mapping[str, list[tuple[int, FloatArray | None]]]
+    surfaces: Mapping[str, list[tuple[int, SurfaceMotion]]]
 
 
-def saved_state(
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    command: SimulatorCommand,
-    samples: int,
-    history: History,
-    faults: Mapping[str, Any],
-    surfaces: Surfaces,
-) -> PhysicsState:
-    """The snapshot of a model, its data, and what the simulator keeps besides."""
-    arrays = {name: getattr(model, name).copy() for name in CHANGED_IN_PLACE}
-    return PhysicsState(
-        step_state(model, data), arrays, command, samples, history, faults, surfaces
-    )
+def changed_arrays(model: mujoco.MjModel) -> dict[str, Any]:
+    """Copies of the arrays of a model that change during a run."""
+    return {name: getattr(model, name).copy() for name in CHANGED_IN_PLACE}
 
 
 def load_state(model: mujoco.MjModel, data: mujoco.MjData, state: PhysicsState) -> None:

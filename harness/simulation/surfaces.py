@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import mujoco
 import numpy as np
 
@@ -20,39 +18,34 @@ Log = list[tuple[int, SurfaceMotion]]
 
 
 class Surfaces:
-    """The motions of belts and turntables, with the history that reconstructs every sample."""
+    """The motions of belts and turntables, with the history that reconstructs every sample.
+
+    Attributes:
+        log: Since which samples the surface of each belt moves how.
+    """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData, recording: Recording) -> None:
         self._physics, self._data, self._recording = physics, data, recording
-        self._log = dict[str, Log]()
+        self.log = dict[str, Log]()
         for name, place in physics.objects.items():
             if place.obj.surface_motion is not None:
-                self._log[name] = [(0, place.obj.surface_motion)]
+                self.log[name] = [(0, place.obj.surface_motion)]
                 self._write(name, place.obj.surface_motion)
-
-    @property
-    def history(self) -> dict[str, Log]:
-        """Since which samples the surface of each belt moves how."""
-        return {name: list(entries) for name, entries in self._log.items()}
-
-    @history.setter
-    def history(self, history: Mapping[str, Log]) -> None:
-        self._log = {name: list(entries) for name, entries in history.items()}
 
     def motion(self, name: str) -> SurfaceMotion:
         """How the surface of a belt moves now."""
-        return self._log[name][-1][1]
+        return self.log[name][-1][1]
 
     def set(self, name: str, motion: SurfaceMotion) -> None:
         """Let the surface of a belt move from now on; what rests on it wakes."""
-        self._log[name].append((self._recording.count, motion))
+        self.log[name].append((self._recording.count, motion))
         self._write(name, motion)
         wake(self._physics.model, self._data)
 
     def recorded(self, first: int = 0) -> dict[str, FloatArray]:
         """Velocity of each surface since the sample before: x, y, z [m/s], turn [rad/s], (N, 4)."""
         velocities: dict[str, FloatArray] = {}
-        for name, log in self._log.items():
+        for name, log in self.log.items():
             rows = velocities[name] = np.zeros((self._recording.count - first, 4))
             for begin, motion in log:
                 rows[max(0, begin - first) :] = [*motion.velocity, motion.rotation]
