@@ -9,14 +9,9 @@ T = TypeVar("T")
 
 
 class LazySequence(Sequence[T]):
-    """A sequence that keeps none of its items."""
+    """A sequence that keeps none of its items; each is made from its index, from 0."""
 
     def __init__(self, count: int, make: Callable[[int], T]) -> None:
-        """Remember how items are made.
-
-        Args:
-            make: Makes the item of an index, from 0.
-        """
         self._count = count
         self._make = make
 

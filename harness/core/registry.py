@@ -134,6 +134,10 @@ class Registry(Mapping[str, P]):
         self[name]
         return self._plugins[name][1]
 
+    def is_own(self, name: str) -> bool:
+        """Whether a plug-in comes with the program."""
+        return self.package_of(name) == OWN_PACKAGE
+
     def modules(self) -> set[str]:
         """The modules of the registered classes and functions that are not built in."""
         others = (each for each, package in self._plugins.values() if package != OWN_PACKAGE)

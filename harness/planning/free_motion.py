@@ -10,12 +10,11 @@ import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
-from harness.core.registry import described
+from harness.core.registry import described, registry
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.checker import touch_records
-from harness.planning.search.find_pipeline import is_built_in
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.task import PlanningTask
@@ -198,8 +197,8 @@ def _search_failure(
 ) -> PlanningFailed:
     pipeline = task.options.pipeline
     who = described(PathPlanner.plugin_kind, pipeline)
-    owner = Details.of(None if is_built_in(pipeline) else PipelineFailure(pipeline))
-    is_plugin = bool(owner.parts)
+    is_plugin = not registry(PathPlanner.plugin_kind).is_own(pipeline)
+    owner = Details.of(PipelineFailure(pipeline) if is_plugin else None)
     if defect is not None:
         whose = f"paths of {who}" if is_plugin else "paths"
         return PlanningFailed(

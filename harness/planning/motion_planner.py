@@ -55,9 +55,12 @@ class VerifiedPlanner:
         """The robot for which motions are planned."""
         return self.scene.description
 
-    @explained
     def plan(self, request: MotionRequest) -> MotionPlan:
         """Plan a motion without collision, timed and verified."""
+        with explained(request, self.scene, self.kinematics):
+            return self._planned(request)
+
+    def _planned(self, request: MotionRequest) -> MotionPlan:
         match request.motion:
             case FreeMotion() as motion:
                 return self._free(request, motion)
@@ -73,14 +76,14 @@ class VerifiedPlanner:
                 kind: MotionKind = registry(MotionKind.plugin_kind).find(motion.kind)()
                 return kind.plan(motion, self._links(request))
 
-    @explained
     def check_goal(self, request: MotionRequest) -> CheckedGoal:
         """Explain the goal of a free motion without planning to it: each IK solution."""
         if not isinstance(request.motion, FreeMotion):
             raise TypeError("only the goal of a free motion can be checked alone")
         motion = request.motion
-        found = self._goals(self._task(request, motion.constraints), request, motion)
-        return CheckedGoal(found.positions[0], found.explanation)
+        with explained(request, self.scene, self.kinematics):
+            found = self._goals(self._task(request, motion.constraints), request, motion)
+            return CheckedGoal(found.positions[0], found.explanation)
 
     def _free(self, request: MotionRequest, motion: FreeMotion) -> MotionPlan:
         task = self._task(request, motion.constraints)

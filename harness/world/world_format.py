@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from harness.core.errors import HarnessError, Problem, SpecError
-from harness.core.registry import OWN_PACKAGE, Plugin, described, raised, registry
+from harness.core.registry import Plugin, described, raised, registry
 from harness.language.world import WorldSpec
 from harness.world.imported import ImportedWorld
 
@@ -51,7 +51,7 @@ def read_foreign_world(path: Path, folders: Sequence[Path]) -> ImportedWorld | N
     name = next((each for each in formats if suffix in formats[each].suffixes), None)
     if name is None:
         return None
-    if formats.package_of(name) == OWN_PACKAGE:
+    if formats.is_own(name):
         return formats[name]().read(path, folders)
     who = described(WorldFormat.plugin_kind, name)
     try:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from typing import Protocol, TypeVar
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
 
 import numpy as np
 
@@ -18,44 +17,32 @@ from harness.planning.diagnosis.branch_stage import branches_finding
 from harness.planning.diagnosis.motion_stages import path_finding, start_finding, timing_finding
 from harness.planning.diagnosis.reach_stage import reach_finding
 from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
-from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
+from harness.planning.goals.goal_study import broken_limits, limit_sentence, study_goal
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import AnyGoal, JointGoal
-from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motion_planning import MotionRequest
 from harness.recording.explanation import Explanation, NearestState, Stage
 
 _NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE", "CRASH")
 
-_R = TypeVar("_R")
 
+def goal_findings(request: StageRequest) -> tuple[list[StageFinding], FloatArray | None]:
+    """Explain reach and inverse kinematics, and the group positions of the first free solution.
 
-def goal_findings(request: StageRequest) -> list[StageFinding]:
-    """Explain reach and inverse kinematics; empty where the motion has no goal of its own."""
+    Nothing where the motion has no goal of its own.
+    """
     goal = request.goal
     if goal is None:
-        return []
+        return [], None
     if isinstance(goal, JointGoal):
-        return _joint_findings(request, np.asarray(goal.positions, dtype=float))
-    study = _study(request, goal)
-    return [reach_finding(request, goal, study), branches_finding(request, goal, study)]
-
-
-def target_positions(request: StageRequest) -> FloatArray | None:
-    """Group positions of the first free solution; None where none is free."""
-    goal = request.goal
-    if goal is None:
-        return None
-    if isinstance(goal, JointGoal):
-        return np.asarray(goal.positions, dtype=float)
-    branches = _study(request, goal).branches
-    return next((branch.positions for branch in branches if not branch.touches), None)
-
-
-def _study(request: StageRequest, goal: LinkGoal) -> GoalStudy:
-    seed = request.options.seed
-    return study_goal(request.kinematics, request.space, request.touches, request.start, goal, seed)
+        positions = np.asarray(goal.positions, dtype=float)
+        return _joint_findings(request, positions), positions
+    space, start, seed = request.space, request.start, request.options.seed
+    study = study_goal(request.kinematics, space, request.touches, start, goal, seed)
+    free = (branch.positions for branch in study.branches if not branch.touches)
+    findings = [reach_finding(request, goal, study), branches_finding(request, goal, study)]
+    return findings, next(free, None)
 
 
 def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageFinding]:
@@ -100,30 +87,19 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageF
     return [reach, StageFinding(stage, nearest, advice)]
 
 
-class _Planner(Protocol):
-    scene: CoalScene
-    kinematics: PinocchioKinematics
-
-
-_S = TypeVar("_S", bound=_Planner)
-
-
+@contextmanager
 def explained(
-    method: Callable[[_S, MotionRequest], _R],
-) -> Callable[[_S, MotionRequest], _R]:
-    """Add an Explanation to the details of a planner method's failures."""
-
-    @wraps(method)
-    def explaining(self: _S, request: MotionRequest) -> _R:
-        try:
-            return method(self, request)
-        except PlanningFailed as failure:
-            has_stage = failure.code not in _NO_STAGE and request.options.is_explained
-            if has_stage and failure.details.find(Explanation) is None:
-                failure.details += Details.of(explanation_of(_request(failure, self, request)))
-            raise
-
-    return explaining
+    request: MotionRequest, scene: CoalScene, kinematics: PinocchioKinematics
+) -> Generator[None]:
+    """Add an Explanation to the details of a failure."""
+    try:
+        yield
+    except PlanningFailed as failure:
+        has_stage = failure.code not in _NO_STAGE and request.options.is_explained
+        if has_stage and failure.details.find(Explanation) is None:
+            stages = _request(failure, scene, kinematics, request)
+            failure.details += Details.of(explanation_of(stages))
+        raise
 
 
 def explanation_of(request: StageRequest) -> Explanation:
@@ -133,10 +109,9 @@ def explanation_of(request: StageRequest) -> Explanation:
     and `advice` is what to do; both belong to the first stage that has them. A start that no
     motion can leave comes before the goal: no other goal helps.
     """
-    findings: list[StageFinding] = goal_findings(request)
+    findings, target = goal_findings(request)
     start = start_finding(request)
-    findings += [start, path_finding(request, target_positions(request))]
-    findings.append(timing_finding(request))
+    findings += [start, path_finding(request, target), timing_finding(request)]
     stages = tuple(finding.stage for finding in findings)
     if request.failure.code.startswith("START_STATE"):
         findings.insert(0, start)
@@ -145,27 +120,24 @@ def explanation_of(request: StageRequest) -> Explanation:
     return Explanation(stages, nearest, advice)
 
 
-def _request(failure: PlanningFailed, planner: _Planner, request: MotionRequest) -> StageRequest:
+def _request(
+    failure: PlanningFailed,
+    scene: CoalScene,
+    kinematics: PinocchioKinematics,
+    request: MotionRequest,
+) -> StageRequest:
     """The stages' input. A choice of several goals is explained by what it raised."""
     start = np.asarray(request.start, dtype=float)
-    space = GroupSpace(planner.kinematics.robot, request.group, start)
+    space, checker = GroupSpace(kinematics.robot, request.group, start), None
+    with suppress(PlanningFailed):  # where no motion can begin from the start state
+        checker = MotionChecker(scene, space, space.part(start), request.options.padding)
     return StageRequest(
         failure=failure,
-        kinematics=planner.kinematics,
-        scene=planner.scene,
+        kinematics=kinematics,
+        scene=scene,
         space=space,
         start=start,
         goal=None if isinstance(request.goal, AnyGoal) else request.goal,
         options=request.options,
-        checker=_checker(planner.scene, space, start, request.options),
+        checker=checker,
     )
-
-
-def _checker(
-    scene: CoalScene, space: GroupSpace, start: FloatArray, options: PlanningOptions
-) -> MotionChecker | None:
-    """The checker of the motion; None where no motion can begin from the start state."""
-    try:
-        return MotionChecker(scene, space, space.part(start), options.padding)
-    except PlanningFailed:
-        return None

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.errors import PlanningFailed
 from harness.core.kinematics import LinkPoses
-from harness.core.registry import OWN_PACKAGE, registry
+from harness.core.registry import registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.ik.answer import IkAnswer, LimitedSolution
@@ -77,7 +77,7 @@ class PinocchioKinematics:
         reference = space.part(seed_positions)
         request = self.request(space, goal, seed_positions, seed, enough=enough)
         solver = self._solver(request)
-        is_own = is_built_in(solver.name)
+        is_own = registry(IkSolver.plugin_kind).is_own(solver.name)
         result = solver().solve(request) if is_own else solve_with_third_party(solver, request)
         refused: list[NearestPose] = []
         solutions = result.solutions
@@ -191,11 +191,6 @@ class PinocchioKinematics:
                 f"link '{link}' is not moved by the joints of group '{space.group}'",
                 LinkFailure(link, space.group),
             )
-
-
-def is_built_in(solver: str) -> bool:
-    """Whether an inverse kinematics solver comes with the program."""
-    return registry(IkSolver.plugin_kind).package_of(solver) == OWN_PACKAGE
 
 
 def _reaching(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from harness.core.registry import OWN_PACKAGE, registry
+from harness.core.registry import registry
 from harness.ports.motion_planning import DEFAULT_PIPELINE
 from harness.ports.path_planning import PathPlanner
 
@@ -39,8 +39,3 @@ def planner_names() -> tuple[str, ...]:
         for each in planner.planner_ids or ("",)
     ]
     return (*find_pipeline(DEFAULT_PIPELINE).planner_ids, *others)
-
-
-def is_built_in(pipeline: str) -> bool:
-    """Whether a planning pipeline comes with the program."""
-    return registry(PathPlanner.plugin_kind).package_of(pipeline) == OWN_PACKAGE

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from harness.core.registry import registry
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.search.find_pipeline import find_pipeline, is_built_in
+from harness.planning.search.find_pipeline import find_pipeline
 from harness.planning.search.third_party import find_third_party_path
 from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
 from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
-from harness.ports.path_planning import PathRequest
+from harness.ports.path_planning import PathPlanner, PathRequest
 
 SEARCHES = 6  # of an attempt, from other seeds, while no path becomes a verified motion
 
@@ -71,7 +72,7 @@ def search(
         seed=seed,
         parameters=options.parameters,
     )
-    if is_built_in(pipeline):
+    if registry(PathPlanner.plugin_kind).is_own(pipeline):
         found = planner().find_path(request)
     else:
         found = find_third_party_path(planner, request)

@@ -10,7 +10,7 @@ from harness.core.errors import RobotError
 from harness.core.registry import described, registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.ik.kinematics import PinocchioKinematics, is_built_in
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.ik.third_party import read_solutions
 from harness.planning.model.robot_model import GroupSpace
@@ -56,7 +56,7 @@ def plugin_solver(name: str, robot: RobotSource, link: str = "") -> Callable[...
         return kinematics.request(space, goal, chain.whole(seed), 0)
 
     def solve(goal: LinkGoal, seed: FloatArray) -> Solutions:
-        if is_built_in(name):
+        if registry(IkSolver.plugin_kind).is_own(name):
             return kinematics.solve(group, goal, chain.whole(seed), 0)
         return read_solutions(solver().solve(request(goal, seed)), len(chain.joint_names))
 
