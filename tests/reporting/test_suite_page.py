@@ -1,6 +1,7 @@
 """A suite's page in a real browser, opened from disk."""
 
 import shlex
+import weakref
 from dataclasses import replace
 
 import cv2
@@ -8,7 +9,10 @@ import numpy as np
 import pytest
 
 from harness.cli.main import main
+from harness.core.lazy import LazySequence
 from harness.reporting.result import StepLine
+from harness.reporting.suite.columns import Columns
+from harness.reporting.suite.page import MOST_PLAIN_ROWS, MOST_ROWS, suite_html
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
 from tests.reporting.browser import wait_for
@@ -228,3 +232,19 @@ def test_pages_of_other_reporters_are_linked(tmp_path, visit):
     page = visit(tmp_path / "index.html").page
     page.click("a.page:text-is('against last green')")
     page.wait_for_url("**/a/pick/c1/against_last_green.html")
+
+
+def test_the_page_keeps_few_cases_in_memory_at_once(tmp_path):
+    alive, most = [0], [0]
+
+    def case(number):
+        found = SuiteCase(passed(number, 0.1), {"height": "5 cm"})
+        alive[0] += 1
+        most[0] = max(most[0], alive[0])
+        weakref.finalize(found, lambda: alive.__setitem__(0, alive[0] - 1))
+        return found
+
+    cases = LazySequence(3 * MOST_PLAIN_ROWS, case)
+    columns = Columns(cases, most_listed=MOST_ROWS)
+    assert "600 of 600 passed" in suite_html(SuiteRecord("passed", cases, []), columns, tmp_path)
+    assert most[0] <= MOST_PLAIN_ROWS + 2

@@ -176,8 +176,8 @@ class Columns:
 
     @property
     def listed(self) -> list[int]:
-        """Indices of the runs that are listed, in their order."""
-        return sorted(-index for _, _, index in self._urgent)
+        """Indices of the runs that are listed: failures, then the nearest to failing."""
+        return [-index for _, _, index in sorted(self._urgent, reverse=True)]
 
     @property
     def parameters(self) -> list[VariedQuantity]:

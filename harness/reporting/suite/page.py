@@ -35,9 +35,9 @@ def suite_html(
     """
     total, outcomes = len(record.cases), columns.outcomes
     packer = Packer()
-    listed = [(i, record.cases[i]) for i in columns.listed]
-    urgent = sorted(listed, key=lambda each: each[1].urgency)  # the first of them get pictures
-    rows = {i: row_facts(i, case, folder, history or {}, packer) for i, case in urgent}
+    urgent = columns.listed  # the first of them get pictures
+    rows = {i: row_facts(i, record.cases[i], folder, history or {}, packer) for i in urgent}
+    plain = [record.cases[i] for i in urgent[:MOST_PLAIN_ROWS]]
     passed = f"{outcomes['passed']} of {total} passed"
     return bundle.rendered(
         FOLDER / "suite.html",
@@ -57,8 +57,8 @@ def suite_html(
         ],
         **{"campaign": None, **sections(columns, record.cases, folder)},
         is_campaign=len(columns.numbers) + outcomes["invalid"] == total,
-        plain=[(case, _link(case, folder)) for _, case in urgent[:MOST_PLAIN_ROWS]],
-        data=packer.text({"rows": [rows[i] for i, _ in listed], "history": bool(history)}),
+        plain=[(each, _link(each, folder)) for each in plain],
+        data=packer.text({"rows": [rows[i] for i in sorted(rows)], "history": bool(history)}),
         has_history=bool(history),
         wall=duration_text(sum(each["wall"] for each in rows.values())),
         unlisted=total - len(rows),
