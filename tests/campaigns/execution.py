@@ -31,6 +31,7 @@ class Outcome:
 
     Attributes:
         refused: Executions that ended in a located error.
+        seconds: Processor time, which a busy machine does not lengthen.
         findings: Kinds of bad ends, by the place in the program that raised.
     """
 
@@ -77,7 +78,7 @@ class Execution:
         assert self.corpus, "no file is read as it is"
         self._names = {self.name_of(data) for data in self.corpus} if reader.is_named else {b""}
         self._last = LastInput(folder / "last")
-        self._begin = self._saved = time.monotonic()
+        self._saved, self._begin = time.monotonic(), processor_time()
 
     def name_of(self, data: bytes) -> bytes:
         """What stays of a file that is changed."""
@@ -112,7 +113,7 @@ class Execution:
     def save(self) -> None:
         """Write the counts so far."""
         self._saved = time.monotonic()
-        self.outcome.seconds = round(self._saved - self._begin, 1)
+        self.outcome.seconds = round(processor_time() - self._begin, 1)
         self.outcome.peak_megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
         part = self._folder / "outcome.part"
         part.write_text(json.dumps(asdict(self.outcome)))
@@ -124,6 +125,11 @@ class Execution:
         while self.outcome.executions < FEW or time.monotonic() < end:
             self.execute(self.changed(self.corpus, rng))
         self.save()
+
+
+def processor_time() -> float:
+    """Processor time of this process and the processes that it has ended [s]."""
+    return sum(os.times()[:4])
 
 
 def reads(read: Read, place: Path, data: bytes) -> bool:

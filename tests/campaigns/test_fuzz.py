@@ -1,9 +1,13 @@
 """Each reader's campaign in small: the files are good, and changed ones end in located errors."""
 
+import time
+
 import pytest
 
+from tests.campaigns import fuzz
 from tests.campaigns.execution import FEW
 from tests.campaigns.fuzz import campaign
+from tests.campaigns.reader import Reader
 from tests.campaigns.readers import READERS
 
 FAST = ("csv", "conditions", "rtps", "bridge", "scene", "submission")
@@ -15,3 +19,27 @@ def test_a_reader_refuses_changed_files_at_their_place(name, tmp_path):
     outcome = campaign(name, tmp_path, seed=0, seconds=0.0)
     assert outcome.executions >= FEW
     assert not outcome.findings, outcome.findings
+
+
+def spin(_folder, data):
+    while data == b"bad":
+        pass
+
+
+def sleep(_folder, data):
+    if data == b"bad":
+        time.sleep(3600)
+
+
+@pytest.mark.parametrize(
+    ("read", "cap", "limit"), [(spin, "LONGEST", 0.3), (sleep, "LONGEST_WAIT", 2.0)]
+)
+def test_a_reader_that_computes_or_waits_without_end_is_a_finding(
+    read, cap, limit, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(fuzz, cap, limit)
+    reader = Reader(lambda _: [b"good"], lambda _corpus, _rng: b"bad", lambda _: read)
+    monkeypatch.setitem(READERS, "endless", reader)
+    found = campaign("endless", tmp_path, seed=0, seconds=0.0)
+    assert [key.startswith("it hangs") for key in found.findings] == [True]
+    assert found.executions == 1
