@@ -13,6 +13,7 @@ from harness.recording.drawings import NO_DRAWINGS, Drawings
 from harness.recording.film import encoded_film
 from harness.recording.signals import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict
 from harness.reporting.html.write import Page
 from harness.reporting.terminal import failure_place
 from tests.judging.synthetic_run import (
@@ -141,6 +142,37 @@ def test_pictures_and_plots_come_back_when_the_graphics_process_ended(browser, t
         wait_for(page, "window.restored >= 2")
         wait_for_colour(page, 0)
         assert not any(page.evaluate(EMPTY))
+
+
+def test_what_a_recording_does_not_show_is_grey_and_said_in_words(visit, tmp_path):
+    run, why = lift_run(), "no topic has the pose of box"
+    verdicts = (
+        Verdict("box is lifted", "not observable", step="lift", reason=why),
+        Verdict("clearance", "not reached", reason="step lift was not reached"),
+        Verdict("duration", "passed", 0.1, "s", 0.5),
+    )
+    file = tmp_path / "report.html"
+    stored = StoredRun(run, verdicts, "passed", "0" * 64, {}, drawings=NO_DRAWINGS)
+    file.write_text(Page(run, ()).html(stored), encoding="utf-8")
+    page = visit(file).page
+    assert page.locator(":is(.verdict, .step, .dot, .mark, .line, #summary tr).bad").count() == 0
+    assert page.locator(".verdict.open .what").all_inner_texts() == [
+        "not observable",
+        "not reached",
+    ]
+    assert why in page.inner_text(".verdict.open >> nth=0")
+    assert page.locator("#steps .dot.open").count() == 1
+
+
+def test_lines_of_one_plot_differ_when_there_are_more_than_colours(visit, tmp_path):
+    pairs = [("left_finger", f"thing{number}") for number in range(30)]
+    forces = {pair: np.full(200, 1.0 + number) for number, pair in enumerate(pairs)}
+    page = visit(write(tmp_path, lift_run(contact_forces=forces, presses={}, frictions={}))).page
+    for place, group in enumerate(("contact", "tcp", "gripper")):
+        page.locator(".plot select").nth(place).select_option(group)
+    names = "chips => chips.map((chip) => chip.querySelector('i').style.background)"
+    swatches = page.locator(".legend button").evaluate_all(names)
+    assert len(set(swatches)) == len(swatches) > 12
 
 
 def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):

@@ -46,7 +46,7 @@ def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bo
         each.id for each in run.steps if each.path == step.path or is_nested(step.path, each.path)
     }
     return any(
-        each.status != "passed" and each.step in around
+        each.status == "failed" and each.step in around
         and (step.start_time < each.time <= step.end_time or each.step == step.id)
         for each in verdicts
     )  # fmt: skip
@@ -55,12 +55,7 @@ def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bo
 def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """A step as plain data; one whose own expectations do not hold looks failed."""
     tone = TONES[step.status]
-    broken = [
-        each
-        for each in verdicts
-        if each.step == step.id
-        and (each.status != "passed" if tone == "good" else each.status == "failed")
-    ]
+    broken = [each for each in verdicts if each.step == step.id and each.status == "failed"]
     return {
         "tone": "bad" if broken and tone == "good" else tone,
         "band": "bad" if tone == "good" and _decided_here(run, step, verdicts) else tone,

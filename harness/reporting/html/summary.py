@@ -20,7 +20,7 @@ STATUS = {
     "failed": "failed",
     "not reached": "not reached",
 }
-TONES = {"failed": "bad", "not reached": "open"}
+TONES = {"failed": "bad", "not reached": "open", "not observable": "open"}
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def _verdicts(stored: StoredRun) -> Iterator[Row]:
     for number, verdict in enumerate(stored.verdicts, start=1):
         holds, line, credit = verdict.status == "passed", verdict.line, verdict.credit
         yield Row(
-            "good" if holds else "bad",
+            TONES.get(verdict.status, "good"),
             (str(number), f"{verdict.expectation}{credit and f' ({credit})'}",
              verdict_line(verdict), _used(verdict),
              str(line or "")),

@@ -1,7 +1,7 @@
 // What differs, and the steps of both runs side by side.
 
 import { byId, element } from "./dom.js";
-import { STATUS } from "./units.js";
+import { statusWord } from "./units.js";
 
 /** @param {any} facts of the comparison @param {(time: number) => void} seek @returns {HTMLElement} */
 export function differencesView(facts, seek) {
@@ -60,6 +60,6 @@ function took(step) {
 function changed(a, b) {
   if (!a) return "only in B";
   if (!b) return "only in A";
-  const [one, two] = [a, b].map((step) => STATUS[step.status]?.word ?? step.status);
+  const [one, two] = [a, b].map((step) => statusWord(step.status));
   return one !== two ? `${one} → ${two}` : `${a.summary} → ${b.summary}`;
 }

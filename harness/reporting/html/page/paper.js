@@ -21,9 +21,7 @@ export function putPlotsOnPaper(plots, repaint) {
     const pictures = plots.panels.map(({ plot, data }) => {
       const names = data.series.flatMap(({ name }, index) => {
         if (plot.hidden.has(index)) return [];
-        const swatch = element("i");
-        swatch.style.background = Plot.color(plot.colors[index]);
-        return [element("span", {}, swatch, short(name)), " "];
+        return [element("span", {}, Plot.swatch(plot.colors[index]), short(name)), " "];
       });
       return element(
         "figure", {},

@@ -1,7 +1,7 @@
 // The planner's requests and results, step by step.
 
 import { element } from "./dom.js";
-import { amount, degrees, number, seconds, stepTone } from "./units.js";
+import { amount, degrees, number, seconds, tone } from "./units.js";
 
 const SOLUTIONS_SHOWN = 8;
 const LABELS = {
@@ -33,7 +33,7 @@ export function plannerView({ run }, select) {
 function planned(step, index, select, slides) {
   const { ik_solutions: solutions, ik_method: method, stages, advice, nearest, picture, ...rest } = step.explanation;
   return element(
-    `section.${stepTone(step.status)}`, { "data-step": index },
+    `section.${tone(step.status)}`, { "data-step": index },
     element("h3", {}, element("button.link", { type: "button", onclick: () => select(index) }, `${index + 1}. ${step.summary}`)),
     step.message && element("p.why", {}, step.message),
     shortening(step.planner),

@@ -9,6 +9,8 @@ import { number } from "./units.js";
 
 const LEAST = { width: 40, height: 25 }; // [CSS pixels] of a plot that is drawn
 const DOT = 2.7; // radius at the cursor [CSS pixels]
+const COLORS = 12; // of the theme
+const DASHES = [[], [7, 3], [2, 3]]; // of lines that share a colour: strokes and gaps [CSS pixels]
 
 /**
  * @typedef {object} PlotData
@@ -39,13 +41,26 @@ export class Plot {
     /** Of the last drawing. @type {Axes | null} */
     this.axes = null;
     this.color = (index) => Plot.color(this.colors[index] ?? index);
+    this.dash = (index) => Plot.dash(this.colors[index] ?? index);
     controlPlot(this, actions);
     new ResizeObserver(() => this.#fit()).observe(this.canvas);
   }
 
   /** Colour of a number. @param {number} index */
   static color(index) {
-    return themeColor(`--s${index % 12}`);
+    return themeColor(`--s${index % COLORS}`);
+  }
+
+  /** Strokes and gaps of a number's line, which differ where colours repeat. @param {number} index */
+  static dash(index) {
+    return DASHES[Math.floor(index / COLORS) % DASHES.length];
+  }
+
+  /** A piece of a number's line. @param {number} index */
+  static swatch(index) {
+    const [made, color, [stroke, gap]] = [element("i"), Plot.color(index), Plot.dash(index)];
+    made.style.background = gap ? `repeating-linear-gradient(90deg, ${color} 0 ${stroke}px, transparent 0 ${stroke + gap}px)` : color;
+    return made;
   }
 
   /** @param {PlotData} data @param {Set<number>} [hidden] series that are not drawn @param {number[]} [colors] number of each one's colour */

@@ -13,11 +13,12 @@ const UNIT_ROOM = 30; // [CSS pixels] of the word `t [s]` under the lower axis
  * @property {Set<number>} hidden series
  * @property {{start: number, end: number, tone: string}[]} bands of the steps
  * @property {(index: number) => string} color of a series
+ * @property {(index: number) => number[]} dash of a series
  * @property {number} ratio pixels in one of CSS
  */
 
 /** Everything but the cursor. @param {any} pen @param {Shown} shown @param {import("./axes.js").Axes} axes */
-export function paint(pen, { data, hidden, bands, color, ratio }, axes) {
+export function paint(pen, { data, hidden, bands, color, dash, ratio }, axes) {
   pen.fillStyle = themeColor("--panel");
   pen.fillRect(0, 0, axes.outer.width, axes.outer.height);
   paintBands(pen, bands, axes);
@@ -32,7 +33,7 @@ export function paint(pen, { data, hidden, bands, color, ratio }, axes) {
     pen.strokeStyle = limit.series === null ? themeColor("--bad") : color(limit.series);
     line(pen, axes.left, axes.y(limit.value), axes.right, axes.y(limit.value));
   }
-  data.series.forEach((series, index) => hidden.has(index) || paintSeries(pen, series, color(index), axes, ratio));
+  data.series.forEach((series, index) => hidden.has(index) || paintSeries(pen, series, color(index), series.dash ?? dash(index), axes, ratio));
   pen.restore();
 }
 
@@ -78,10 +79,10 @@ function paintAxes(pen, axes) {
 }
 
 /** A line through the samples in sight. */
-function paintSeries(pen, series, color, axes, ratio) {
+function paintSeries(pen, series, color, dash, axes, ratio) {
   pen.strokeStyle = color;
   pen.lineWidth = 1.5;
-  pen.setLineDash(series.dash ?? []);
+  pen.setLineDash(dash);
   pen.lineJoin = "round";
   pen.beginPath();
   let isDown = false;

@@ -128,15 +128,13 @@ export class Plots {
     const names = [...new Set(this.panels.flatMap(({ data }) => data.series.map(({ name }) => name)))];
     this.colors = new Map(names.map((name, index) => [name, index]));
     const chips = names.map((name, index) => {
-      const swatch = element("i");
-      swatch.style.background = Plot.color(index);
       return element(
         "button",
         {
           type: "button", title: name, "aria-pressed": !this.hidden.has(name),
           onclick: () => this.#toggle(name), ondblclick: () => this.#only(names, name),
         },
-        swatch, element("span", {}, short(name)),
+        Plot.swatch(index), element("span", {}, short(name)),
       );
     });
     this.legend.replaceChildren(...chips);

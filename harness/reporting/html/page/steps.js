@@ -1,7 +1,7 @@
 // The list of steps, folded where they passed: what each did, its line in the file, its verdicts, why it failed.
 
 import { byId, element, scrollInto } from "./dom.js";
-import { STATUS, tone } from "./units.js";
+import { statusWord, tone } from "./units.js";
 
 const ROOMY = 12; // steps in sight, up to which long titles take a second line
 
@@ -68,14 +68,13 @@ function ancestors(parents, index) {
 }
 
 function row(step, index, select) {
-  const state = STATUS[step.status]?.word ?? step.status;
   const isNamed = !/^steps?[_[]/.test(step.id);
   const failure = step.message && step.status !== "passed";
   const title = isNamed ? `${step.id}: ${step.summary}` : step.summary;
   return element(
     `button.step.${step.tone}`,
     { type: "button", onclick: () => select(index), title },
-    element("i.sign", { role: "img", "aria-label": state }),
+    element("i.sign", { role: "img", "aria-label": statusWord(step.status) }),
     element("span.title", {}, element("b", {}, isNamed ? step.id : step.summary), isNamed ? element("span.what", {}, ` ${step.summary}`) : null),
     element("code.place", { title: "Line of the file" }, step.line ? `:${step.line}` : ""),
     element("span.took", {}, step.status === "not reached" ? "–" : duration(step)),

@@ -1,7 +1,7 @@
 // Source, findings, joints and environment: the plainer tabs.
 
 import { element } from "./dom.js";
-import { number, seconds, stepTone, tone } from "./units.js";
+import { number, seconds, tone } from "./units.js";
 
 /**
  * The scenario file, with the lines of failures in red.
@@ -12,7 +12,7 @@ export function sourceView({ run }, select) {
   const bad = new Set();
   const known = new Set();
   const toned = [
-    ...run.steps.map(({ line, status }) => [line, stepTone(status)]),
+    ...run.steps.map(({ line, status }) => [line, tone(status)]),
     ...run.verdicts.map(({ line, status }) => [line, tone(status)]),
   ];
   for (const [line, colour] of toned) {

@@ -4,6 +4,7 @@ import { element } from "./dom.js";
 import { amount, amounts, seconds, tone } from "./units.js";
 
 const WORST_SHOWN = 3;
+const ORDER = ["bad", "open", "good"];
 
 /**
  * @param {import("./payload.js").Payload} payload
@@ -16,7 +17,7 @@ export function verdictList({ run }, select) {
     return element("p.empty", {}, note ? `Note: ${note.message}.` : "The file expects nothing beyond what its steps say.");
   }
   const order = run.verdicts.map((_, index) => index);
-  order.sort((a, b) => Number(run.verdicts[a].status === "passed") - Number(run.verdicts[b].status === "passed"));
+  order.sort((a, b) => ORDER.indexOf(tone(run.verdicts[a].status)) - ORDER.indexOf(tone(run.verdicts[b].status)));
   return element(
     "ul.verdicts", {},
     ...order.map((index) => element("li", {}, verdict(run, run.verdicts[index], index, select))),

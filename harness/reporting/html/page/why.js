@@ -3,7 +3,7 @@
 import { rgba, themeColor } from "./dom.js";
 import { crossLines, place } from "./marks.js";
 import { indexAt } from "./payload.js";
-import { amount } from "./units.js";
+import { amount, tone } from "./units.js";
 import { addScaled, dot, subtract } from "./vectors.js";
 
 const HIGHLIGHT = 0.7; // glow of the bodies that a verdict is about
@@ -44,10 +44,10 @@ export class Why {
     const measure = verdict?.measures[0];
     if (!measure) return [];
     const number = amount(measure.value, measure.unit);
-    const tone = verdict.status === "passed" ? "good" : "bad";
-    if (points) return [{ point: addScaled(points.expected, subtract(points.actual, points.expected), 0.5), text: number, tone }];
+    const color = tone(verdict.status);
+    if (points) return [{ point: addScaled(points.expected, subtract(points.actual, points.expected), 0.5), text: number, tone: color }];
     const body = this.replay.byName.get(verdict.bodies[0]);
-    return body ? [{ point: body.pose.slice(0, 3), text: `${measure.detail} ${number}`, tone }] : [];
+    return body ? [{ point: body.pose.slice(0, 3), text: `${measure.detail} ${number}`, tone: color }] : [];
   }
 
   /** The planned path and the recorded one, with what lies between them made large enough to be seen. */
