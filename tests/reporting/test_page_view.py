@@ -194,6 +194,24 @@ def test_the_address_follows_the_clock(page):
     assert "step=" in page.url, "the selection stays"
 
 
+def test_the_view_comes_back_when_the_graphics_card_lost_it(page):
+    wait_for_frame(page)
+    before = picture(page)
+    page.evaluate("""() => {
+      const canvas = document.querySelector('#view canvas');
+      window.loss = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+      canvas.addEventListener('webglcontextlost', () => (window.state = 'lost'));
+      canvas.addEventListener('webglcontextrestored', () => (window.state = 'restored'));
+      window.loss.loseContext();
+    }""")
+    wait_for(page, "window.state === 'lost'")
+    page.evaluate("window.loss.restoreContext()")
+    wait_for(page, "window.state === 'restored'")
+    assert np.abs(picture(page) - before).max() <= 2, "the same picture as before"
+    put_back(page, "#t=1.2")
+    assert np.abs(picture(page) - before).max() > 20, "and it goes on"
+
+
 @pytest.mark.nightly
 def test_plots_and_pictures_are_saved_as_files(page, tmp_path):
     for selector, head in (

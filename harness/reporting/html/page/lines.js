@@ -26,13 +26,32 @@ export class Lines {
   /** @param {WebGL2RenderingContext} gl */
   constructor(gl) {
     this.gl = gl;
-    this.program = compile(gl, LINE);
-    /** @type {(Line & {vertexArray: WebGLVertexArrayObject, buffer: WebGLBuffer})[]} */
+    /** @type {(Line & {points: ArrayLike<number>, vertexArray: WebGLVertexArrayObject, buffer: WebGLBuffer})[]} */
     this.all = [];
+  }
+
+  /** Put everything on the graphics card, at first and after the card has lost it. */
+  prepare() {
+    this.program = compile(this.gl, LINE);
+    for (const line of this.all) {
+      const { points, segments } = line;
+      this.setPoints(Object.assign(line, this.#buffer()), points);
+      line.segments = segments;
+    }
   }
 
   /** @param {ArrayLike<number>} points x, y, z of each @param {Partial<Line>} options @returns {Line} */
   add(points, options) {
+    const line = {
+      ...this.#buffer(), points, color: [0, 0, 0, 1], width: 2, dash: 0, visible: true, onTop: false,
+      first: 0, segments: 0, model: IDENTITY, pixels: 0, ...options,
+    };
+    this.all.push(line);
+    this.setPoints(line, points);
+    return line;
+  }
+
+  #buffer() {
     const { gl } = this;
     const [vertexArray, buffer] = [gl.createVertexArray(), gl.createBuffer()];
     gl.bindVertexArray(vertexArray);
@@ -41,18 +60,13 @@ export class Lines {
       gl.enableVertexAttribArray(location);
       gl.vertexAttribPointer(location, size, gl.FLOAT, false, 4 * FLOATS, offset);
     }
-    const line = {
-      vertexArray, buffer, color: [0, 0, 0, 1], width: 2, dash: 0, visible: true, onTop: false,
-      first: 0, segments: 0, model: IDENTITY, pixels: 0, ...options,
-    };
-    this.all.push(line);
-    this.setPoints(line, points);
-    return line;
+    return { vertexArray, buffer };
   }
 
   /** Give a line other points. @param {Line} line @param {ArrayLike<number>} points */
   setPoints(line, points) {
     const { gl } = this;
+    Object.assign(line, { points });
     gl.bindBuffer(gl.ARRAY_BUFFER, /** @type {any} */ (line).buffer);
     gl.bufferData(gl.ARRAY_BUFFER, vertices(points), gl.DYNAMIC_DRAW);
     line.segments = Math.max(0, points.length / 3 - 1);

@@ -18,22 +18,37 @@ const SOLID = 0.99; // opacity from which on nothing is seen through
  * @property {boolean} [isUntouchable] clicks go through it
  * @property {boolean} [recedes] a translucent one is hidden by what is solid at the same place
  */
-/** @typedef {Surface & {vertexArray: WebGLVertexArrayObject, count: number}} Shape */
+/** @typedef {{positions: Float32Array, normals: Float32Array, indices: Uint32Array}} Mesh */
+/** @typedef {Surface & {mesh: Mesh, vertexArray: WebGLVertexArrayObject, count: number}} Shape */
 
 export class Surfaces {
   /** @param {WebGL2RenderingContext} gl */
   constructor(gl) {
     this.gl = gl;
-    this.program = compile(gl, SURFACE);
     /** @type {Shape[]} */
     this.all = [];
   }
 
-  /**
-   * @param {{positions: Float32Array, normals: Float32Array, indices: Uint32Array}} mesh
-   * @param {number[]} color rgba @param {Partial<Surface>} options @returns {Surface}
-   */
-  add({ positions, normals, indices }, color, options) {
+  /** Put everything on the graphics card, at first and after the card has lost it. */
+  prepare() {
+    this.program = compile(this.gl, SURFACE);
+    const arrays = new Map(this.all.map(({ mesh }) => [mesh, null]));
+    for (const mesh of arrays.keys()) arrays.set(mesh, this.#upload(mesh));
+    for (const each of this.all) each.vertexArray = arrays.get(each.mesh);
+  }
+
+  /** @param {Mesh} mesh @param {number[]} color rgba @param {Partial<Surface>} options @returns {Surface} */
+  add(mesh, color, options) {
+    const surface = {
+      mesh, vertexArray: this.#upload(mesh), count: mesh.indices.length, color, model: IDENTITY,
+      visible: true, castsShadow: color[3] > SOLID, grid: 0, glow: 0, ...options,
+    };
+    this.all.push(surface);
+    return surface;
+  }
+
+  /** @param {Mesh} mesh */
+  #upload({ positions, normals, indices }) {
     const { gl } = this;
     const vertexArray = gl.createVertexArray();
     gl.bindVertexArray(vertexArray);
@@ -46,12 +61,7 @@ export class Surfaces {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
-    const surface = {
-      vertexArray, count: indices.length, color, model: IDENTITY,
-      visible: true, castsShadow: color[3] > SOLID, grid: 0, glow: 0, ...options,
-    };
-    this.all.push(surface);
-    return surface;
+    return vertexArray;
   }
 
   /** Another surface with the same triangles. @param {Surface} surface @param {Partial<Surface>} options @returns {Surface} */

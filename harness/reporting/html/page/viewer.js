@@ -36,12 +36,23 @@ export class Viewer {
     this.isCoarse = false;
     this.drawn = 0;
     this.cost = 0; // of a picture, once measured [ms]
-    this.shadow = new Shadow(gl, bounds);
     this.bodies = new Surfaces(gl);
     this.lines = new Lines(gl);
+    this.#prepare(bounds);
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault()); // so that it is restored
+    this.canvas.addEventListener("webglcontextrestored", () => this.#prepare(this.shadow.bounds));
+    new ResizeObserver(() => this.redraw()).observe(host);
+  }
+
+  /** Put everything on the graphics card, at first and after the card has lost it. @param {{center: number[], radius: number}} bounds */
+  #prepare(bounds) {
+    const { gl } = this;
+    this.shadow = new Shadow(gl, bounds);
+    this.bodies.prepare();
+    this.lines.prepare();
     this.offscreen = new Offscreen(gl);
     this.sky = compile(gl, SKY);
-    new ResizeObserver(() => this.redraw()).observe(host);
+    this.moved();
   }
 
   /** What the sun's shadow covers. @param {{center: number[], radius: number}} bounds [m] */
