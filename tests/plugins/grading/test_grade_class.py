@@ -23,6 +23,8 @@ from harness.plugins.grading.classroom.confined import (
     adopted_orphans,
     descendants,
 )
+from harness.plugins.grading.classroom.pages import distribution
+from harness.plugins.grading.classroom.results import Criterion
 from tests.plugins.grading.classes import IK, SOLUTION, SUBMISSIONS, scenario_class
 from tests.reporting.browser import new_context
 
@@ -85,10 +87,33 @@ def test_students_see_margins_of_hidden_cases_and_not_the_cases(graded):
 
 def test_the_page_of_the_class_shows_how_points_are_distributed(graded):
     text = (graded / "index.html").read_text()
-    parts = re.findall(r'class="hidden">([\d.]+) to ([\d.]+) points: (\d+) submission', text)
-    assert len(parts) == 10
-    counted = {low: int(count) for low, _, count in parts if count != "0"}
-    assert counted == {"0": 3, "1.8": 1, "3.6": 1, "5.4": 1}
+    parts = re.findall(r'class="hidden">(?:from|all) ([\d.]+)[^<]* points: (\d+) submission', text)
+    counted = {low: int(count) for low, count in parts if count != "0"}
+    assert [low for low, _ in parts] == [str(low) for low in range(7)]
+    assert counted == {"0": 3, "2": 1, "4": 1, "6": 1}
+
+
+@pytest.mark.parametrize(
+    ("points", "ends"),
+    [
+        (10, range(11)),
+        (14, range(0, 15, 2)),
+        (100, range(0, 101, 10)),
+        (13, [0, 2, 4, 6, 8, 10, 12, 13]),
+        (1, [each / 10 for each in range(11)]),
+    ],
+)
+def test_bars_of_the_distribution_are_round_points_and_full_marks_have_their_own(points, ends):
+    class Student:
+        earned = points
+
+    class Class:
+        criteria = (Criterion("all", points),)
+        students = (Student, Student)
+
+    bars = distribution(Class)
+    assert [low for low, _, _ in bars] == pytest.approx(list(ends))
+    assert [count for _, _, count in bars] == [0] * (len(bars) - 1) + [2]
 
 
 def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_show(graded):
@@ -115,7 +140,7 @@ def test_no_cell_of_a_table_covers_another_one(graded, browser, width):
         heights = opened.eval_on_selector_all(
             ".distribution i", "bars => bars.map(bar => bar.getBoundingClientRect().height)"
         )
-        assert heights[0] == pytest.approx(3 * heights[3], rel=0.02), "3 submissions and 1"
+        assert heights[0] == pytest.approx(3 * heights[2], rel=0.02), "3 submissions and 1"
 
 
 def test_tables_for_other_programs_have_everybody(graded):

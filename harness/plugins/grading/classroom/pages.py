@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import base64
 import os
+from bisect import bisect_right
 from collections import Counter
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import count, pairwise
 from pathlib import Path
 from urllib.parse import quote
 
@@ -23,8 +24,8 @@ FOLDER = Path(__file__).with_name("page")
 PAGE = "index.html"
 MOST_PICTURES = 4  # of a submission's page, the failed steps first
 LARGEST_PICTURE = 10**6  # [bytes]
-TENTHS = 10
-ROUNDING = 1e-9  # of a tenth: sums of points such as 0.1 + 0.2 belong to the tenth they begin
+FEWEST_BARS, MOST_BARS = 5, 12  # of the distribution of points, but for that of full marks
+ROUNDING = 1e-9  # [points]: sums such as 0.1 + 0.2 belong to the bar they begin
 FEWEST_DRAWN = 5  # submissions; the points of fewer are read from the table
 
 PROTECTS = {
@@ -90,14 +91,18 @@ def losses(grade: ClassGrade) -> list[Loss]:
 
 
 def distribution(grade: ClassGrade) -> list[tuple[float, float, int]]:
-    """The lower and upper end of each tenth of the points, and its number of submissions."""
+    """The least points of each bar and of the next one, and its number of submissions.
+
+    A bar is 1, 2, 5, ... points wide, or such a decimal; full marks are the last one.
+    """
     points = sum(each.points for each in grade.criteria)
-    ends = [points * tenth / TENTHS for tenth in range(TENTHS + 1)]
-    counts = Counter(
-        min(TENTHS - 1, int(TENTHS * each.earned / points + ROUNDING)) if points else TENTHS - 1
-        for each in grade.students
-    )
-    return [(low, high, counts[place]) for place, (low, high) in enumerate(pairwise(ends))]
+    first = 0 if points >= FEWEST_BARS else -2
+    widths = (digit * 10.0**power for power in count(first) for digit in (1, 2, 5))
+    width = next(each for each in widths if points <= MOST_BARS * each)
+    inner = (place * width for place in range(MOST_BARS))
+    ends = [*(each for each in inner if each < points - ROUNDING), points]
+    counts = Counter(bisect_right(ends, each.earned + ROUNDING) - 1 for each in grade.students)
+    return [(low, high, counts[i]) for i, (low, high) in enumerate(pairwise([*ends, points]))]
 
 
 def _class_html(grade: ClassGrade, folder: Path) -> str:
