@@ -165,8 +165,9 @@ def eventually(
         values: Margins, shape (n,), n > 0, without NaN.
         hold: Must be held so long without a break [s].
         within: Latest beginning after the first sample [s].
-        progress: Chooses the deciding sample among equal margins, shape (n,); among spans of equal
-            margins the one with most samples that hold is chosen.
+        progress: Chooses the deciding sample among equal margins, shape (n,). Among spans of equal
+            margins the one with most samples that hold is chosen; where none holds, the one that
+            came furthest.
 
     Raises:
         TooShort: No sample that may begin it is followed by `hold` seconds.
@@ -177,8 +178,12 @@ def eventually(
         return Decision(float(values[index]), index, bool(values[index] >= 0))
     minima = range_min(values, starts, ends)
     holding = np.concatenate([[0], np.cumsum(values >= 0)])
-    best = _best(minima, (holding[ends + 1] - holding[starts]).astype(float))
-    index = int(starts[best] + np.argmin(values[starts[best] : ends[best] + 1]))
+    reached = (holding[ends + 1] - holding[starts]).astype(float)
+    if progress is not None and not reached.any():
+        reached = -range_min(-np.nan_to_num(progress, nan=-np.inf), starts, ends)
+    best = _best(minima, reached)
+    span = slice(starts[best], ends[best] + 1)
+    index = int(starts[best]) + _best(-values[span], None if progress is None else progress[span])
     return Decision(float(minima[best]), index, bool(minima[best] >= 0))
 
 

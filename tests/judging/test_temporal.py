@@ -147,6 +147,22 @@ def test_a_hold_counts_from_its_first_sample_to_its_last():
     assert not eventually(values, times, hold=0.3).holds
 
 
+@pytest.mark.parametrize(
+    ("progress", "index"),
+    [([0, 0, 2, 9, 1, 0], 3), ([0, 5, 2, 1, 4, 3], 1), ([np.nan, 1, np.nan, 2, 1, 0], 3)],
+)
+def test_a_hold_that_never_comes_is_decided_where_it_came_furthest(progress, index):
+    times = np.arange(6) * 0.1
+    missed = eventually(np.full(6, -1.0), times, hold=0.2, progress=np.array(progress, float))
+    assert (missed.index, missed.value, missed.holds) == (index, -1.0, False)
+
+
+def test_a_hold_that_breaks_is_decided_next_to_what_held():
+    values, times = np.array([-1.0, -1, 1, 1, -1, -1]), np.arange(6) * 0.1
+    missed = eventually(values, times, hold=0.3, progress=np.array([0.0, 1, 8, 9, 2, 0]))
+    assert missed.index in (1, 4)
+
+
 def test_minus_infinity_stays_where_it_is():
     values = np.array([1.0, -np.inf, 2.0, 3.0])
     times = np.arange(4) * 0.1
