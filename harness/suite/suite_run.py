@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from array import array
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -53,6 +54,7 @@ class SuiteRun:
         self.unfinished: dict[int, ProgressEvent] = {}
         self._request = request
         self._stream: Stream | None = None
+        self._wall = 0.0
         self._sampling = Sampling(plan, is_part=self.is_part)
 
     def _job(self, index: int) -> RunRequest:
@@ -80,6 +82,7 @@ class SuiteRun:
             self.unfinished[index] = event
             watch(index, event)
 
+        begin = time.monotonic()
         try:
             self._open_stream()
             for count, (index, result) in enumerate(self._arriving(server, watched), 1):
@@ -89,6 +92,7 @@ class SuiteRun:
                     free_memory()
         except KeyboardInterrupt:
             self.is_interrupted = True
+        self._wall = 0.0 if self.resumed else time.monotonic() - begin
         self.count()
 
     def take(self, index: int, result: CaseResult, place: Place | None) -> None:
@@ -200,7 +204,8 @@ class SuiteRun:
         """What the suite's files are written from."""
         counted = array("Q", self.results)
         cases = LazySequence(len(counted), lambda index: self.case(counted[index]))
-        return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted, self.missing_parts)
+        outcome, parts = self.outcome, self.missing_parts
+        return SuiteRecord(outcome, cases, self.rates, self.is_interrupted, parts, wall=self._wall)
 
     def case(self, index: int) -> SuiteCase:
         """A result as the files of a suite show it, by index into `jobs`."""

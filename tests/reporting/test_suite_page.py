@@ -48,6 +48,12 @@ def test_it_lists_everything_and_hostile_names_stay_text(small, visit):
     assert link.endswith("a/pick/c1/report.html#t=2.00&expect=2")
 
 
+def test_the_time_of_the_suite_is_not_the_sum_of_its_cases(small, visit, tmp_path):
+    assert "the cases add up to 0.2 s" in visit(small).text("#outcomes")
+    page = write_suite(tmp_path, replace(small_suite(), wall=200.0), 3)[0]
+    assert "took 3 min 20 s" in visit(page).text("#outcomes")
+
+
 def test_failures_come_first_with_their_cause_in_a_line_and_details_on_a_click(small, visit):
     page = visit(small).page
     outcomes = page.locator("tr.case").evaluate_all(

@@ -60,7 +60,8 @@ def suite_html(
         plain=[(each, _link(each, folder)) for each in plain],
         data=packer.text({"rows": [rows[i] for i in sorted(rows)], "history": bool(history)}),
         has_history=bool(history),
-        wall=duration_text(sum(each["wall"] for each in rows.values())),
+        wall=duration_text(record.wall),
+        of_cases=duration_text(sum(each["wall"] for each in rows.values())),
         unlisted=total - len(rows),
     )
 

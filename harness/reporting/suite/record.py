@@ -93,6 +93,7 @@ class SuiteRecord:
         title: What the page is called instead of the number of cases that passed.
         failing_changes: What a search found, the smallest change first.
         progress: The number of runs that are done while the suite runs; empty when it has ended.
+        wall: Wall time from the first case to the last [s]; 0 where it is not known.
     """
 
     outcome: Outcome
@@ -103,6 +104,7 @@ class SuiteRecord:
     title: str = ""
     failing_changes: Sequence[FailingChange] = ()
     progress: str = ""
+    wall: float = 0.0
 
 
 def results_json(
