@@ -8,6 +8,7 @@ from harness.core.spatial import SE3
 from harness.robot.compose import RobotPart
 from harness.robot.mechanism import Link, fixed_joint
 from harness.robot.srdf.srdf import Srdf
+from harness.robot.tree import carried_by
 
 FLANGE = "flange"
 
@@ -22,10 +23,7 @@ def without_gripper(part: RobotPart) -> RobotPart:
     if hand is None or place is None:
         return part
     removed = {link for links in hand.links_by_side.values() for link in links}
-    removed.add(part.facts.tcp_link or "")
-    for joint in part.urdf.joints:  # parents before children
-        if joint.parent in removed:
-            removed.add(joint.child)
+    removed = carried_by([*removed, part.facts.tcp_link or ""], part.urdf.joints)
     links = tuple(link for link in part.urdf.links if link.name not in removed)
     joints = tuple(joint for joint in part.urdf.joints if joint.child not in removed)
     held = SE3.from_xyz_rpy(place.xyz, place.rpy)

@@ -28,6 +28,13 @@ RENAMED_ROOT = "robot_world"
 """New name of a root link that is named `world` in the robot's file."""
 
 
+CLOSING_SPEED = 0.075
+"""Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
+
+VELOCITY_SHARE = 0.8
+"""Share of a gripper's velocity limit that is commanded at most: fingers bounce when they meet."""
+
+
 @dataclass(frozen=True)
 class PlanningGroup:
     """An SRDF group.
@@ -163,6 +170,15 @@ class RobotDescription(Mechanism):
         if not self.arms:
             return () if self.gripper is None else (self.gripper,)
         return tuple(arm.gripper for arm in self.arms if arm.gripper is not None)
+
+    def closing_speed(self, gripper: Gripper) -> float:
+        """Speed of a gripper's joint that changes its gap at CLOSING_SPEED, within its limit."""
+        limit = VELOCITY_SHARE * self.joint_by_name[gripper.joint].velocity
+        positions, gaps = gripper.widths[:, 0], gripper.widths[:, 1]
+        if len(positions) < 2:
+            return min(limit, abs(gripper.closed_position - gripper.open_position))
+        steepest = float(np.abs(np.diff(gaps) / np.diff(positions)).max())
+        return min(limit, CLOSING_SPEED / steepest)
 
     @cached_property
     def of_arm(self) -> Mapping[str, RobotDescription]:

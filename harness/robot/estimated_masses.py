@@ -12,7 +12,7 @@ from harness.core.solids import point_inertia
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.mechanism import Inertial, Link
 from harness.robot.mesh_file import hull_solid, shape_solid
-from harness.robot.tree import carriers
+from harness.robot.tree import carried_by, carriers
 from harness.robot.urdf.links import corrected_note, possible_moments
 from harness.robot.urdf.urdf import Urdf
 
@@ -99,10 +99,7 @@ def _with_tensor(link: Link, shaped_only: list[str], notes: list[str]) -> Link:
 
 def _carried(urdf: Urdf, link: str) -> float:
     """Mass of the links distal to a link [kg]."""
-    distal = {link}
-    for joint in urdf.joints:  # parents before children
-        if joint.parent in distal:
-            distal.add(joint.child)
+    distal = carried_by([link], urdf.joints)
     return sum(each.inertial.mass for each in urdf.links if each.inertial and each.name in distal)
 
 

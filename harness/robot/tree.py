@@ -100,6 +100,15 @@ def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
     return carrier
 
 
+def carried_by(links: Iterable[str], joints: Iterable[Joint]) -> set[str]:
+    """Some links, and all links that they carry; parents stand before children in `joints`."""
+    found = {*links}
+    for joint in joints:
+        if joint.parent in found:
+            found.add(joint.child)
+    return found
+
+
 def is_rigid(robot: RobotDescription, first: str, second: str) -> bool:
     """Whether no movable joint is between two links (or a link and `world`)."""
     carrier = carriers(robot.joints, "world")

@@ -11,6 +11,7 @@ from harness.core.wrench_sensor import WrenchSensor
 from harness.language.wrench_sensors import WrenchSensorSpec
 from harness.robot.description import RobotDescription
 from harness.robot.mechanism import WORLD, Joint, Link
+from harness.robot.tree import carried_by
 
 
 def with_wrench_sensors(
@@ -28,15 +29,6 @@ def with_wrench_sensors(
     return replace(description, wrench_sensors={**description.wrench_sensors, **sensors})
 
 
-def _carried(link: str, joints: Collection[Joint]) -> set[str]:
-    """A link, and all links that it carries; parents stand before children in `joints`."""
-    carried = {link}
-    for joint in joints:
-        if joint.parent in carried:
-            carried.add(joint.child)
-    return carried
-
-
 def flaw(sensor: WrenchSensor, links: Collection[Link], joints: Collection[Joint]) -> str:
     """Why a sensor cannot measure anything; empty where it can."""
     names = [link.name for link in links if link.name != WORLD]
@@ -46,7 +38,7 @@ def flaw(sensor: WrenchSensor, links: Collection[Link], joints: Collection[Joint
         return (
             f"the robot has a link '{sensor.frame_id}', as the sensor's frame is called: rename it"
         )
-    carried = _carried(sensor.link, joints)
+    carried = carried_by([sensor.link], joints)
     if any(link.collisions or link.inertial is not None for link in links if link.name in carried):
         return ""
     return (

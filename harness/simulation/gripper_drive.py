@@ -9,7 +9,6 @@ import numpy as np
 from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.ports.simulation import GripperResult
 from harness.robot.end_effector import Gripper
-from harness.robot.gripper.closing_speed import joint_speed
 from harness.robot.mechanism import Joint
 from harness.simulation.motors import Motors
 from harness.simulation.recording import Recording
@@ -33,7 +32,7 @@ class GripperDrive:
         self._joint = simulator.description.joint_index[gripper.joint]
         self.actuator = simulator.actuator_of(gripper)
         self._range = abs(gripper.closed_position - gripper.open_position)
-        self._speed = joint_speed(simulator.description, gripper)
+        self._speed = simulator.description.closing_speed(gripper)
         self.pending: SetPoints | None = None
 
     def start(self, position: float, max_effort: float) -> None:

@@ -140,25 +140,13 @@ def coal_hull(hull: Any) -> ConvexTree:
     return _polytope(points, np.array([(face[0], face[1], face[2]) for face in polygons]))
 
 
-def hull_of_solid(points: FloatArray) -> ConvexTree:
-    """A node that contains the corners of solids, shape (N, 3)."""
+def hull_of_points(points: FloatArray) -> ConvexTree:
+    """A node that contains points, shape (N, 3)."""
     if len(points) <= FEW_POINTS:
         return leaf(points)
     try:
         return coal_hull(hull_of(points))
     except RuntimeError:  # flat
-        return leaf(points)
-
-
-def hull_of_points(points: FloatArray) -> ConvexTree:
-    """A node that contains points, shape (N, 3)."""
-    if len(points) <= FEW_POINTS:
-        return leaf(points)
-    from scipy.spatial import ConvexHull, QhullError  # Coal's Qhull can crash on flat points
-
-    try:
-        return _polytope(points, ConvexHull(points).simplices.astype(np.int64))
-    except QhullError:  # flat
         return leaf(points)
 
 
@@ -183,7 +171,7 @@ def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
     below = concatenate(trees)
     solid = [corners for tree in trees if (corners := tree.root_corners()) is not None]
     if len(solid) == len(trees):
-        tree = concatenate([hull_of_solid(np.concatenate(solid)), below])
+        tree = concatenate([hull_of_points(np.concatenate(solid)), below])
         tree.nodes[0, 0] = len(tree.nodes)
         return tree
     top, nodes = np.array([[1 + len(below.nodes), -1]]), below.nodes + np.array([1, 0])

@@ -17,7 +17,7 @@ from harness.planning.collision.convex_tree import ConvexTree, joined
 from harness.planning.collision.shape_tree import shape_tree
 from harness.robot.mesh_file import decomposition_of, metres_per_unit
 
-METHOD = 2  # Version of the trees; those of another version are computed again
+METHOD = 3  # Version of the trees; those of another version are computed again
 _ARRAYS = tuple(each.name for each in dataclasses.fields(ConvexTree))
 
 
@@ -62,4 +62,4 @@ def _content(shape: Shape) -> bytes:
 
 @cache
 def _versions() -> tuple[str, ...]:
-    return np.__version__, version("coal"), version("scipy"), version("trimesh")
+    return np.__version__, version("coal"), version("trimesh")

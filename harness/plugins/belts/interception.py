@@ -20,7 +20,6 @@ from harness.ports.motions import FreeMotion, TimedLinkMotion
 from harness.recording.explanation import Explanation
 from harness.robot.description import RobotDescription
 from harness.robot.end_effector import Gripper
-from harness.robot.gripper.closing_speed import joint_speed
 
 PACES = (0.5, 0.8, 1.2, 1.8)
 """Durations of the approach that are tried, quickest first [s]."""
@@ -35,7 +34,7 @@ def closing_time(
     description: RobotDescription, gripper: Gripper, start: float, goal: float
 ) -> float:
     """The time that the gripper's joint takes from one position to another, in hundredths [s]."""
-    speed = joint_speed(description, gripper)
+    speed = description.closing_speed(gripper)
     rise = speed / description.joint_by_name[gripper.joint].acceleration
     return on_hundredths(abs(goal - start) / speed + rise)
 

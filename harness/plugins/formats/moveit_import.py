@@ -24,7 +24,7 @@ from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.robot.packages import PackagePath
 from harness.robot.robot_source import RobotSource
-from harness.world.notes import Note
+from harness.world.imported import Note
 
 OnProgress = Callable[[str, int, int], None]
 SOURCE_KEYS = ("urdf", "xacro", "mjcf", "srdf")  # keys of `robot:` that hold a path

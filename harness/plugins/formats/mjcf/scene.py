@@ -28,8 +28,7 @@ from harness.plugins.formats.sdf.values import validated
 from harness.plugins.formats.sdf.world import LONGEST_STEP, SHORTEST_STEP
 from harness.robot.packages import PackagePath
 from harness.robot.tree import free_name
-from harness.world.imported import ImportedWorld
-from harness.world.notes import Notes
+from harness.world.imported import ImportedWorld, Notes
 
 LONGEST_NAME = 100
 KINDS: dict[int, Literal["hinge", "slide"]] = {2: "slide", 3: "hinge"}  # of mjtJoint

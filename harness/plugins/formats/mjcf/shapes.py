@@ -22,7 +22,7 @@ from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.round_meshes import ellipsoid
 from harness.plugins.formats.sdf.values import validated
 from harness.robot.mesh_file import SUFFIXES
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 
 PLAIN = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's colour of a geom without a colour or a material
 

@@ -17,7 +17,7 @@ from harness.plugins.formats.moveit_messages.values import (
 )
 from harness.plugins.formats.plain_values import rounded
 from harness.plugins.formats.yaml_data import number, read_data, refuse
-from harness.world.notes import Note, Notes
+from harness.world.imported import Note, Notes
 
 KEYS = ("goal_constraints", "start_state", "group_name")
 IGNORED = ("path_constraints", "trajectory_constraints", "reference_trajectories")

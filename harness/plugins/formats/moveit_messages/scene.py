@@ -28,7 +28,7 @@ from harness.plugins.formats.stl import Triangles, add_mesh, cone
 from harness.plugins.formats.yaml_data import number, read_data, refuse
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.srdf.srdf import link_pair
-from harness.world.notes import Note, Notes
+from harness.world.imported import Note, Notes
 
 KEYS = ("world", "robot_model_name")
 PRIMITIVES = {"1": "box", "2": "sphere", "3": "cylinder", "4": "cone"}

@@ -27,8 +27,7 @@ from harness.plugins.formats.plain_values import (
     pose_spec,
 )
 from harness.plugins.formats.stl import Triangles, add_mesh, cone
-from harness.world.imported import ImportedWorld
-from harness.world.notes import Notes
+from harness.world.imported import ImportedWorld, Notes
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 

@@ -13,7 +13,7 @@ from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.sdf.joints import KINDS
 from harness.plugins.formats.sdf.scope import OWN, WORLD, Named, SdfScope
 from harness.plugins.formats.sdf.values import text_of
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.language.files.xml_file import XmlElement
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 
 READ = {
     kind: tuple(words.split())

@@ -12,7 +12,7 @@ from harness.plugins.formats.fixture_words import PartJoint
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.scope import SdfScope
 from harness.plugins.formats.sdf.values import is_flag, number, numbers_of
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 
 KINDS: dict[str, Literal["hinge", "slide"]] = {
     "revolute": "hinge",

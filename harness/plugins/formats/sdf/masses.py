@@ -14,7 +14,7 @@ from harness.language.world import ShapeSpec
 from harness.plugins.formats.object_words import MassProperties, together
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.values import is_true, number, pose_of
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 from harness.world.objects import primitive
 
 WATER = 1000.0  # default density of an automatic inertial in SDF 1.11 [kg/m^3]

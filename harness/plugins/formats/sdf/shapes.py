@@ -23,7 +23,7 @@ from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath
 from harness.plugins.formats.sdf.round_meshes import cone, ellipsoid
 from harness.plugins.formats.sdf.values import number, numbers_of, positive, text_of
 from harness.robot.mesh_file import convex_hull
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 
 PLAIN_COLORS: Mapping[str, Rgba] = {
     "Grey": (0.7, 0.7, 0.7, 1.0),

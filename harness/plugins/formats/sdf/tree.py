@@ -13,7 +13,7 @@ from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath, model_file
 from harness.plugins.formats.sdf.scope import WORLD, Named, SdfScope, check_frames
 from harness.plugins.formats.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
-from harness.world.notes import Notes
+from harness.world.imported import Notes
 
 OLDEST, NEWEST = (1, 4), (1, 11)
 NO_COLONS = (1, 8)  # the version from which `::` is in no name

@@ -24,8 +24,7 @@ from harness.plugins.formats.sdf.object import LONGEST_NAME, object_of, part_of
 from harness.plugins.formats.sdf.shapes import ShapeReader
 from harness.plugins.formats.sdf.tree import SdfLight, SdfTree
 from harness.plugins.formats.sdf.values import is_flag, is_true, numbers_of, validated
-from harness.world.imported import ImportedWorld
-from harness.world.notes import Notes
+from harness.world.imported import ImportedWorld, Notes
 
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as in a world file
 

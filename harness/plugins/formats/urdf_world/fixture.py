@@ -21,8 +21,7 @@ from harness.robot.mechanism import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf, parse_urdf
-from harness.world.imported import ImportedWorld
-from harness.world.notes import Notes
+from harness.world.imported import ImportedWorld, Notes
 
 
 def load_urdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:

@@ -13,7 +13,6 @@ from harness.plugins.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.plugins.ros.interfaces import GRIPPER
 from harness.recording.commands import CommandRecord
 from harness.robot.end_effector import Gripper
-from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.gripper_drive import (
     GOAL_TOLERANCE,
     STALL_SPEED,
@@ -55,7 +54,7 @@ class GripperMotion:
             reach = f"from {joint.lower:g} to {joint.upper:g}"
             raise GoalRefused(f"'{joint.name}' goes {reach}, not to {target:g}")
         self.goal, self.effort = command.goal, min(effort, gripper.max_effort)
-        self._speed = joint_speed(description, gripper)
+        self._speed = description.closing_speed(gripper)
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._target, self._timestep, self._begin = target, servos.timestep, command.time
         here = float(servos.joint_positions()[description.joint_index[joint.name]])

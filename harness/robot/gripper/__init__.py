@@ -1,1 +1,0 @@
-"""Grippers and TCPs inferred from a description without annotations."""
