@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from harness.language.files.yaml_file import UNITS
+from harness.plugins.formats.unit_tags import UNITS
 from harness.plugins.formats.xacro.functions import BUILTINS, MATH, METHODS, PYTHON
 from tests.robot.format_rows import Row
 from tests.robot.format_tables import TABLES

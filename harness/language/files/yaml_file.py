@@ -1,7 +1,5 @@
 """Reads a YAML file into values with places: YAML 1.2 scalars, bounded, without tags.
 
-Files of ROS may have tags for units.
-
 libyaml's events are composed here and not by its own composer: that one calls itself for every
 level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (`on` is true,
 `1e-3` is text), and drops duplicate keys.
@@ -9,12 +7,11 @@ level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (
 
 from __future__ import annotations
 
-import math
 import re
 import stat
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import yaml
 
@@ -24,16 +21,6 @@ from harness.core.limits import YAML_FILE, YAML_LEVELS, YAML_VALUES
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
 from harness.language.files.yaml_scalars import scalar_of
 from harness.language.files.yaml_wording import TOO_DEEP, syntax_problem
-
-UNITS = {
-    "!radians": 1.0,
-    "!degrees": math.pi / 180,
-    "!meters": 1.0,
-    "!millimeters": 0.001,
-    "!foot": 0.3048,
-    "!inches": 0.0254,
-}
-"""Tags of YAML files for robots, with their unit in radians or metres."""
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -90,20 +77,18 @@ def parse_yaml(
     text: str,
     source: Source,
     problems: list[Problem] | None = None,
-    *,
-    number: Callable[[str], float] | None = None,
+    composer: Composer | None = None,
 ) -> Located:
     """The one document of a text; a mapping.
 
     Args:
-        number: The number of a text after a tag of UNITS, or a ValueError; None: there are no tags.
         problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
             the file can be read as well; None: they are raised.
 
     Raises:
         SpecError: A syntax error, after which nothing can be trusted, or no mapping.
     """
-    composer = Composer(source, number)
+    composer = composer or Composer(source)
     root = composer.read(text)
     is_mapping = root is not None and isinstance(root.value, dict)
     if composer.problems and (problems is None or not is_mapping):
@@ -138,13 +123,17 @@ def parse_value(text: str, source: Source) -> Located:
 
 
 class Composer:
-    """Composes events into located values; continues after a mistake, collecting problems."""
+    """Composes events into located values; continues after a mistake, collecting problems.
+
+    Attributes:
+        tags: Tags of scalars that `_scalar` reads; all others are mistakes.
+    """
 
     has_merge_keys = False
+    tags: ClassVar[Collection[str]] = ()
 
-    def __init__(self, source: Source, number: Callable[[str], float] | None = None) -> None:
+    def __init__(self, source: Source) -> None:
         self.source = source
-        self._number = number
         self.problems: list[Problem] = []
         self._anchors: dict[str, Located] = {}
         self._sizes: dict[str, tuple[int, int]] = {}  # values and depth of an anchor
@@ -180,10 +169,10 @@ class Composer:
         self._bound(place, depth)
         if isinstance(event, yaml.AliasEvent):
             return self._alias(event, place, depth)
-        is_unit = event.tag in UNITS and isinstance(event, yaml.ScalarEvent)
-        if event.tag not in (None, "!") and not (is_unit and self._number):
+        is_scalar = isinstance(event, yaml.ScalarEvent)
+        if event.tag not in (None, "!") and not (is_scalar and event.tag in self.tags):
             hint = 'tags have no meaning here; put the value in "quotes" to make it text'
-            if is_unit and event.tag[1:] in ("degrees", "radians"):
+            if is_scalar and event.tag in ("!degrees", "!radians"):
                 hint = f"write `{event.value} {event.tag[1:4]}`"
             short = event.tag.replace("tag:yaml.org,2002:", "!!")
             self.problems.append(place.problem(f"`{short}` is a tag", hint))
@@ -252,12 +241,6 @@ class Composer:
 
     def _scalar(self, event: Any, place: Place) -> Scalar:
         text = str(event.value)
-        if self._number and event.tag in UNITS:
-            try:
-                return self._number(text) * UNITS[event.tag]
-            except ValueError as error:
-                self.problems.append(place.problem(str(error)))
-                return 0
         if not event.implicit[0] or event.style in ("'", '"', "|", ">"):
             return text
         try:

@@ -12,6 +12,7 @@ from harness.core.quantity import split_quantity
 from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Source
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
+from harness.plugins.formats.unit_tags import UnitComposer
 
 
 def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:
@@ -27,7 +28,8 @@ def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:
     """
     text = read_text(path)
     require_key(text, keys, str(path), kind)
-    return parse_yaml(text, Source.of_text(str(path), text), number=_plain_number)
+    source = Source.of_text(str(path), text)
+    return parse_yaml(text, source, composer=UnitComposer(source, _plain_number))
 
 
 def _plain_number(text: str) -> float:

@@ -9,7 +9,7 @@ import yaml
 
 from harness.core.errors import SpecError
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
-from harness.language.files.yaml_file import Composer
+from harness.plugins.formats.unit_tags import UnitComposer
 
 YAML_11: Any = yaml.SafeLoader("")
 KINDS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
@@ -31,7 +31,7 @@ def parse_ros_yaml(text: str, source: Source, number: Callable[[str], float]) ->
     return root or Located(None, Place(source))
 
 
-class _RosComposer(Composer):
+class _RosComposer(UnitComposer):
     """Composes YAML 1.1, of whose duplicate keys the last one counts."""
 
     has_merge_keys = True
