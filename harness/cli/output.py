@@ -224,19 +224,12 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
         return EXIT_CODES["error"]
 
 
-_documents: list[str] = []
-
-
-def say_document(text: str) -> None:
-    """Write a document to stdout, as it is, when the command has ended."""
-    _documents.append(text)
+_documents: list[object] = []
 
 
 def say_json(document: object) -> None:
     """Write a document to stdout as JSON when the command has ended."""
-    from harness.reporting.json_text import json_text
-
-    say_document(json_text(document))
+    _documents.append(document)
 
 
 @contextmanager
@@ -245,6 +238,8 @@ def only_json_on_stdout() -> Iterator[None]:
 
     A text buffer of the caller's in place of stdout receives everything.
     """
+    from harness.reporting.json_text import json_text
+
     sys.stdout.flush()
     _documents.clear()
     try:
@@ -262,4 +257,4 @@ def only_json_on_stdout() -> Iterator[None]:
             os.dup2(true_stdout, descriptor)
             os.close(true_stdout)
     for document in _documents:
-        output().document(document)
+        output().document(json_text(document))

@@ -69,11 +69,7 @@ def released_parts(window: Window, name: str) -> tuple[Part, Part]:
 
 
 def rest_is_known(window: Window, here: BoolArray) -> BoolArray:
-    """Where the speeds of `STILL` seconds before are recorded, in the window or before it.
-
-    Args:
-        here: Where the object is present, for the whole run.
-    """
+    """Where the speeds of `STILL` seconds before, `here` in the scene, are recorded."""
     judged = window.cut(observed_for(window.run, here, STILL))
     if window.cut(here).any() and not judged.any():
         soon = f"what stands still is known after {1000 * STILL:.0f} ms, not before"

@@ -15,8 +15,8 @@ from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import balls_of
 from harness.judging.facts import fact
 from harness.judging.hands import every_hand_link, gripper_of, own_links
-from harness.judging.poses import present, put_samples
-from harness.judging.temporal import trailing_max, without_gaps
+from harness.judging.poses import arrivals, present, put_samples
+from harness.judging.temporal import last_within, trailing_max, without_gaps
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
@@ -29,6 +29,7 @@ FORCE_WINDOW = 0.010
 otherwise: longer than the vibrations of a stiff contact, shorter than a motion or a person's push.
 """
 SUCTION = "suction"  # the one side of a gripper with suction cups
+SETTLING = 0.008  # until bodies that are put where they touch exactly press each other [s]
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 
@@ -47,6 +48,20 @@ def debounced(run: Run, force: FloatArray) -> FloatArray:
     return trailing_max(force, run.signals.times, DEBOUNCE)
 
 
+def unbroken(run: Run, force: FloatArray, names: Collection[str]) -> FloatArray:
+    """A force between bodies of which gaps of up to `DEBOUNCE` are closed [N], shape (N,).
+
+    Gaps of up to `SETTLING` before the first contact of what was just put there are closed as well.
+    """
+    times, begun = run.signals.times, force.copy()
+    last = last_within(times, SETTLING)
+    objects = [each.name for each in run.objects if each.name in names]
+    for start in {0, *(sample for name in objects for sample in arrivals(run, name).tolist())}:
+        soon = slice(start, last[start] + 1)
+        begun[soon] = np.fmax.accumulate(force[soon][::-1])[::-1]
+    return without_gaps(np.where(np.isnan(force), np.nan, begun), times, DEBOUNCE)
+
+
 def touched(run: Run, name: str, but: Collection[str] = ()) -> list[str]:
     """Bodies that ever touched another one, without some, sorted."""
     bodies = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
@@ -59,7 +74,7 @@ def bodies_touching(run: Run, name: str, but: Collection[str] = ()) -> dict[str,
     Gaps of up to `DEBOUNCE` between two contacts are closed; nothing outlasts its last contact.
     """
     return {
-        other: without_gaps(force_between(run, {name}, {other}), run.signals.times, DEBOUNCE)
+        other: unbroken(run, force_between(run, {name}, {other}), {name, other})
         for other in touched(run, name, but)
     }
 
@@ -192,8 +207,6 @@ def could_touch(run: Run, pairs: Collection[tuple[str, str]]) -> BoolArray:
     together = np.zeros(len(run.signals.times), dtype=bool)
     for first, second in pairs:
         together |= here[first] & here[second]
-        if together.all():
-            break
     return together
 
 
@@ -264,9 +277,10 @@ def _skipped_by_links(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Ver
     if "clearances" in run.unrecorded or "contact_forces" in run.unrecorded:
         return ()
     links, every = run.robot.link_names, set(run.robot.link_names)
+    physical = {record.name for record in run.objects if record.in_simulation}
     found: list[VerdictWarning] = []
     for (first, name), distance in sorted(run.signals.clearances.items()):
-        if first != "robot" or name == "robot" or not _is_physical(run, name):
+        if first != "robot" or name == "robot" or name not in physical:
             continue
         nearest = run.signals.clearance_links.get((first, name), np.full(len(distance), -1))
         among = [links.index(link) for link in every if (min(link, name), max(link, name)) in pairs]
@@ -284,10 +298,6 @@ def _skipped_by_links(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Ver
                 )
             )
     return tuple(found)
-
-
-def _is_physical(run: Run, name: str) -> bool:
-    return any(record.name == name and record.in_simulation for record in run.objects)
 
 
 def _least_known_width(run: Run, name: str) -> float:

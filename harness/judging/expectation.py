@@ -65,11 +65,7 @@ class Expectation(ExpectationFields):
     word: ClassVar[str] = ""
 
     def check(self, at: At) -> None:
-        """Report what is wrong with the expectation itself for this robot and scene.
-
-        Args:
-            at: The robot, the objects and the place in the file.
-        """
+        """Report what is wrong with the expectation itself for this robot and scene."""
 
     def stated_arm(self) -> str | None:
         """The arm that it names, of a robot with several; None where it names none."""

@@ -111,6 +111,12 @@ def put_samples(run: Run, name: str) -> IntArray:
     return records[0].put_samples(run.signals.times) if records else np.zeros(0, dtype=np.int64)
 
 
+def arrivals(run: Run, name: str) -> IntArray:
+    """Samples at which an object appears or is put somewhere else, ascending."""
+    changes = np.diff(present(run, name).astype(np.int8), prepend=0)
+    return np.union1d(np.flatnonzero(changes > 0), put_samples(run, name))
+
+
 def start_samples(run: Run, name: str) -> IntArray:
     """When the object last appeared or was put somewhere at each sample, -1 before, shape (N,).
 
@@ -118,9 +124,8 @@ def start_samples(run: Run, name: str) -> IntArray:
     however little, or made it jump; without the latter, teleporting would be lifting.
     """
     poses = object_poses(run, name)
-    here = present(run, name)
-    starts = here & ~np.concatenate([[False], here[:-1]])
-    starts[put_samples(run, name)] = True
+    starts = np.zeros(len(poses), dtype=bool)
+    starts[arrivals(run, name)] = True
     jumps = np.zeros(len(poses))
     jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
     for step in run.steps:

@@ -21,13 +21,13 @@ from harness.judging.contacts import (
     force_between,
     pairs_of,
     sample_time,
+    unbroken,
     unseen_contacts,
 )
 from harness.judging.expectation import SPECIAL_BODIES, Predicate
 from harness.judging.hold import averaged_force
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
-from harness.judging.temporal import without_gaps
 from harness.judging.window import Window, lasting
 from harness.language.base import Duration, Force, Name
 from harness.language.expectation import Quantity
@@ -39,9 +39,9 @@ CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "c
 class InContact(Predicate):
     """The two bodies touch.
 
-    A contact lasts through gaps of at most 10 ms: stiff bodies that rub or rattle part for some
-    samples again and again. It is judged while both are in the physics: with an object that only
-    the planner knows it is not observable, before an object is there it is not reached. A contact
+    A contact lasts through gaps of at most 10 ms, as stiff bodies rattle, and 8 ms before the first
+    one of what was just put there. It is judged while both are in the physics: with an object that
+    only the planner knows it is not observable, before one is there it is not reached. A contact
     without `min_force` lasts for a single sample at least; a force is averaged over `force_window`.
     """
 
@@ -89,9 +89,9 @@ class InContact(Predicate):
         if self.min_force > 0:
             every = averaged_force(run, every, self.force_window)
         force = window.cut(every)
-        unbroken = without_gaps(every, run.signals.times, DEBOUNCE)
+        lasting_force = unbroken(run, every, firsts | seconds)
         limit = max(self.min_force, TOUCH_FORCE)
-        part = Part(CONTACT, window.cut(unbroken), limit, ">=", detail=f"{first} and {second}")
+        part = Part(CONTACT, window.cut(lasting_force), limit, ">=", detail=f"{first} and {second}")
 
         touching = np.flatnonzero(force >= TOUCH_FORCE)
 

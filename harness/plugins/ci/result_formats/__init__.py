@@ -1,1 +1,0 @@
-"""Values of `--format` that services read, one module for each."""
