@@ -151,41 +151,42 @@ def _first_verified_motion(
             timed = task.overload(short) or _timed(task, short)
         except TimingError as problem:
             timed = Defect(str(problem), problem.details)
-        if isinstance(timed, JointTrajectory):
+        if not isinstance(timed, Defect):
+            trajectory, away = timed
             moved = sum(task.space.effort(*edge) for edge in pairwise(short))
-            statistics = task.statistics(found.planner_id, timed, short, path)
-            away = float(distances_to_path(timed.positions, short).max())
+            statistics = task.statistics(found.planner_id, trajectory, short, path)
             search = SearchStatistics(
                 effort.attempts, effort.checks, found.vertices, VERIFIED_RESOLUTION, away
             )
-            return _Motion(timed, short[-1], moved, statistics, search)
+            return _Motion(trajectory, short[-1], moved, statistics, search)
         defect = timed
     return defect
 
 
-def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:
-    """Time a path with the largest blends that pass verification, or with stops."""
+def _timed(task: PlanningTask, waypoints: FloatArray) -> tuple[JointTrajectory, float] | Defect:
+    """Time a path with the largest blends that pass verification, or stops; and its deviation."""
     names, end = task.space.joint_names, waypoints[-1]
     if len(waypoints) == 2:
         trajectory = time_straight(names, waypoints[0], end, task.limits)
-        return task.defect(trajectory, end) or trajectory
+        return task.defect(trajectory, end) or (trajectory, 0.0)
     for blend in BLEND_DEVIATIONS:
         path = BlendedPath(waypoints, blend)
-        if not task.checker.path_free(path.outline(), FINAL_RESOLUTION):
+        if not all(task.checker.path_free(each, FINAL_RESOLUTION) for each in path.blends()):
             continue  # what is timed is verified; this saves the times of most that would fail
         try:
             trajectory = time_blended(names, path, task.limits)
         except TimingError:
             continue
-        departure = find_departure(trajectory, waypoints, blend)
+        away = distances_to_path(trajectory.positions, waypoints)
+        departure = find_departure(trajectory, away, blend)
         if departure is None and task.defect(trajectory, end) is None:
-            return trajectory
+            return trajectory, float(away.max())
     blocked = path_collision(waypoints, task.checker, VERIFIED_RESOLUTION)
     if blocked is not None:
         return blocked
     trajectory = time_stopping(names, waypoints, task.limits)
-    departure = find_departure(trajectory, waypoints, 0.0)
-    return departure or task.defect(trajectory, end) or trajectory
+    departure = find_departure(trajectory, distances_to_path(trajectory.positions, waypoints), 0.0)
+    return departure or task.defect(trajectory, end) or (trajectory, 0.0)
 
 
 def _search_failure(

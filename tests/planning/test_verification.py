@@ -9,7 +9,11 @@ from harness.core.geometry import Box, Shape
 from harness.core.trajectory import JointTrajectory
 from harness.planning.task import make_task
 from harness.planning.timing.timing import BlendedPath, time_blended, time_straight
-from harness.planning.verification.verify import find_defect, find_departure
+from harness.planning.verification.verify import (
+    distances_to_path,
+    find_defect,
+    find_departure,
+)
 from harness.plugins.motions.held_constraints import PathBands
 from harness.ports.goals import JointBand, PathConstraints
 from harness.ports.motion_planning import PlanningOptions
@@ -123,8 +127,9 @@ def test_what_is_in_the_way_is_found_with_its_time(good):
 def test_a_trajectory_off_the_path_that_was_checked_is_found(task):
     path = np.array([START, START + np.array([0.4, 0.2, 0, 0, 0, 0]), END])
     trajectory = time_blended(task.space.joint_names, BlendedPath(path, 0.05), task.limits)
-    assert find_departure(trajectory, path, 0.05) is None
-    tight = find_departure(trajectory, path, 0.005)
+    away = distances_to_path(trajectory.positions, path)
+    assert find_departure(trajectory, away, 0.05) is None
+    tight = find_departure(trajectory, away, 0.005)
     assert tight is not None
     assert 0.005 < tight.details.plain()["path_deviation"] <= 0.05
     corner = np.linalg.norm(trajectory.positions - path[1], axis=1).min()

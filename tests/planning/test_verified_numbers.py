@@ -193,7 +193,8 @@ def test_a_departure_is_named_where_it_is_largest():
         positions = away.positions.copy()
         positions[4, 1] -= off
         positions[7, 1] += 0.009
-        found = find_departure(replace(away, positions=positions), waypoints, 0.01)
+        distances = distances_to_path(positions, waypoints)
+        found = find_departure(replace(away, positions=positions), distances, 0.01)
         assert (found is not None) == is_found
     assert found.details.plain()["time"] == pytest.approx(0.4)
     assert found.details.plain()["path_deviation"] == pytest.approx(0.010002)

@@ -84,11 +84,11 @@ class BlendedPath:
         grid[0], grid[-1] = 0.0, self.length
         return grid
 
-    def outline(self) -> FloatArray:
-        """Positions at both ends and at five points of each blend, shape (K, dof)."""
+    def blends(self) -> FloatArray:
+        """Five positions of each blend, its ends included, shape (B, 5, dof)."""
         first, last = self.breaks[1:-1:2], self.breaks[2:-1:2]
-        on_blends = np.linspace(first, last, 5, axis=1).ravel()
-        return self.evaluate(np.concatenate([[0.0], on_blends, [self.length]]))[0]
+        places = np.linspace(first, last, 5, axis=1)
+        return self.evaluate(places.ravel())[0].reshape(*places.shape, -1)
 
 
 def _alternating(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -69,14 +69,15 @@ def find_defect(
 
 
 def find_departure(
-    trajectory: JointTrajectory, waypoints: FloatArray, deviation: float
+    trajectory: JointTrajectory, away: FloatArray, deviation: float
 ) -> Defect | None:
     """Where a trajectory leaves its path farther than it may, or None.
 
     Args:
-        deviation: Largest joint-space distance from its lines [rad].
+        trajectory: The trajectory with its times.
+        away: How far its set points are from the path that was checked [rad], shape (N,).
+        deviation: The largest of these distances that is allowed [rad].
     """
-    away = distances_to_path(trajectory.positions, waypoints)
     row = int(np.argmax(away))
     if away[row] <= deviation + END_TOLERANCE:
         return None
