@@ -23,7 +23,7 @@ from harness.language.reading.overrides import apply_overrides, from_options
 from harness.language.reading.params import substitute
 from harness.language.reading.partial import PartialReader, Prerequisite
 from harness.language.reading.short_forms import models_shape
-from harness.language.reading.varied_paths import check_variation, values_of_case
+from harness.language.reading.varied_paths import check_variation, unread_parameters, values_of_case
 from harness.language.reading.wording import is_follow_up, problems_of
 from harness.language.scenario import Scenario
 from harness.language.world import WorldSpec
@@ -115,13 +115,13 @@ def read_scenario(
     source = text if isinstance(text, Source) else Source.of_text(str(path), text)
     text = "\n".join(source.own_lines()) if isinstance(text, Source) else text
     problems: list[Problem] = []
-    notes: list[Problem] = []
     whole = "\n".join(source.lines) if source.others else text
     root = parse_yaml(whole, source, problems)
     of_file = values_of_case(root, given)
     options = {key: value for key, value in given.items() if key not in of_file}
     root = apply_overrides(root, [*of_file.values(), *from_options(options, problems)], problems)
     check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
+    notes = unread_parameters(root)
     written = substitute(with_includes(root, path, problems), problems)
     try:
         model, lines = _model(written, Scenario, problems, notes)

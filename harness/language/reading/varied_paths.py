@@ -11,10 +11,10 @@ from harness.core.errors import Problem
 from harness.core.quantity import split_quantity
 from harness.core.untrusted_json import parse_json
 from harness.language.files.mistakes import value_text
-from harness.language.files.source import Entry, Located, located
+from harness.language.files.source import Entry, Located, located, walk
 from harness.language.reading.case_keys import case_entries
 from harness.language.reading.overrides import Override, apply_overrides
-from harness.language.reading.params import PARAMS
+from harness.language.reading.params import PARAMS, REFERENCE
 from harness.language.variation import VARIATION_KEYS, Distribution
 
 MOST_ROUNDS = 100  # sets of values that are tried of a file, so many choices of one value at most
@@ -66,12 +66,23 @@ def _set_twice(root: Located) -> Iterator[Problem]:
             yield entry.key.problem(message, "leave it out of one of them")
 
 
-def _why_constant(root: Located, path: str, decisive: Set[str]) -> str:
-    """Why a path must have one value in all cases; empty where it need not.
+def unread_parameters(root: Located) -> list[Problem]:
+    """Notes of varied parameters that the file reads nowhere, each at its line."""
+    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+    texts = [item.value for _, item in walk(root) if isinstance(item.value, str)]
+    read = {each["name"] for text in texts for each in REFERENCE.finditer(text)}
+    found: dict[str, Problem] = {}
+    for path, entry in (*_parametrized(root), *_randomized(root)):
+        name = path.removeprefix(f"{PARAMS}.").partition(".")[0]
+        if name in params and name not in read:
+            message = f"nothing reads the parameter `{name}`, so that its values change nothing"
+            hint = f"write `${{{name}}}` where they belong"
+            found.setdefault(name, entry.key.problem(message, hint))
+    return list(found.values())
 
-    Args:
-        decisive: Names of the parameters that the cases follow from.
-    """
+
+def _why_constant(root: Located, path: str, decisive: Set[str]) -> str:
+    """Why a path has one value in all cases, which `decisive` parameters make; else empty."""
     first, *rest = path.split(".")
     if path == "seed" and {"samples", "randomize"} & root.mapping().keys():
         return "each sample has a seed of its own, which follows from the file's"
