@@ -21,7 +21,7 @@ from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing.limits import Limits, TimingError
-from harness.planning.timing.profiles import cubic_curve, on_grid, quintic_curve, sample
+from harness.planning.timing.profiles import cubic, on_grid, quintic, sample, straight_curve
 from harness.planning.timing.timing import time_straight
 from harness.ports.goals import PathConstraints
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionRequest
@@ -189,5 +189,5 @@ def _timed_to_duration(task: PlanningTask, end: FloatArray, duration: float) -> 
             f"give it at least {shortest[slowest]:.3f} s",
             DurationFailure(name, float(shortest[slowest]), duration),
         )
-    curve = (quintic_curve if is_smooth else cubic_curve)(task.start, end, total)
+    curve = straight_curve(task.start, end, (quintic if is_smooth else cubic)(total))
     return sample(task.space.joint_names, curve, total)

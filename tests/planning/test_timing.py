@@ -8,8 +8,8 @@ import pytest
 from harness.planning.timing.profiles import (
     GRID,
     Trapezoid,
-    cubic_curve,
-    quintic_curve,
+    cubic,
+    quintic,
     smoothed,
     straight_curve,
 )
@@ -85,7 +85,7 @@ def test_a_trapezoid_covers_its_length_in_its_time():
 
 
 def test_a_cubic_takes_the_time_it_is_given():
-    curve = cubic_curve(np.zeros(2), np.array([1.0, -2.0]), 4.0)
+    curve = straight_curve(np.zeros(2), np.array([1.0, -2.0]), cubic(4.0))
     positions, velocities, accelerations = curve(np.array([0.0, 2.0, 4.0]))
     assert np.allclose(positions, [[0, 0], [0.5, -1.0], [1.0, -2.0]])
     assert np.allclose(velocities, [[0, 0], [0.375, -0.75], [0, 0]])
@@ -117,7 +117,7 @@ def test_a_short_way_under_a_jerk_limit_takes_what_four_equal_phases_take():
 
 
 def test_a_quintic_begins_and_ends_without_acceleration():
-    curve = quintic_curve(np.zeros(1), np.ones(1), 2.0)
+    curve = straight_curve(np.zeros(1), np.ones(1), quintic(2.0))
     times = np.linspace(0.0, 2.0, 2001)
     positions, velocities, accelerations = curve(times)
     assert np.allclose(positions[[0, 1000, -1], 0], [0, 0.5, 1])

@@ -14,6 +14,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.robot.description import RobotDescription
+from harness.robot.tree import joints_to
 
 METRES_TO_RADIANS = 10.0
 """How much a prismatic joint's metre counts in joint-space distances (0.1 m is like 1 rad)."""
@@ -191,17 +192,11 @@ class GroupSpace:
 
 def _leverage(description: RobotDescription, joint_names: tuple[str, ...]) -> FloatArray:
     """Length of the chain distal to each joint over the longest: a wrist's turn counts less."""
-    before = {joint.child: joint for joint in description.joints}
     last = description.joint_by_name[joint_names[-1]].child
     tips = [group.tip_link for group in description.groups.values() if group.tip_link]
-    chains = []
-    for tip in (*tips, last):
-        chain, link = [], tip
-        while link in before:
-            chain.append(before[link])
-            link = before[link].parent
-        if all(description.joint_by_name[name] in chain for name in joint_names):
-            chains.append(chain)
+    chains = [joints_to(tip, description.joints)[::-1] for tip in (*tips, last)]
+    names = {*joint_names}
+    chains = [chain for chain in chains if names <= {joint.name for joint in chain}]
     if not chains:
         return np.ones(len(joint_names))
     chain = max(chains, key=len)

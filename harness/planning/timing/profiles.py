@@ -145,34 +145,25 @@ def straight_curve(first: FloatArray, second: FloatArray, profile: Profile) -> C
     return curve
 
 
-def cubic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve:
-    """Point to point at rest on both ends, as a JointTrajectoryController does it."""
-    span = second - first
+def cubic(duration: float) -> Profile:
+    """From 0 to 1, at rest on both ends, as a JointTrajectoryController interpolates."""
 
-    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        u = np.clip(times / duration, 0.0, 1.0)[:, None]
-        return (
-            first + (3 * u**2 - 2 * u**3) * span,
-            (6 * u - 6 * u**2) / duration * span,
-            (6 - 12 * u) / duration**2 * span,
-        )
+    def profile(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        u = np.clip(times / duration, 0.0, 1.0)
+        return 3 * u**2 - 2 * u**3, (6 * u - 6 * u**2) / duration, (6 - 12 * u) / duration**2
 
-    return curve
+    return profile
 
 
-def quintic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve:
-    """Point to point, velocity and acceleration zero on both ends: the least jerk over its time."""
-    span = second - first
+def quintic(duration: float) -> Profile:
+    """From 0 to 1, rate and acceleration zero on both ends: the least jerk over its time."""
 
-    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        u = np.clip(times / duration, 0.0, 1.0)[:, None]
-        return (
-            first + ((6 * u - 15) * u + 10) * u**3 * span,
-            30 * (u * (1 - u)) ** 2 / duration * span,
-            60 * u * (1 - u) * (1 - 2 * u) / duration**2 * span,
-        )
+    def profile(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        u = np.clip(times / duration, 0.0, 1.0)
+        rate, change = 30 * (u * (1 - u)) ** 2, 60 * u * (1 - u) * (1 - 2 * u)
+        return ((6 * u - 15) * u + 10) * u**3, rate / duration, change / duration**2
 
-    return curve
+    return profile
 
 
 def sample(joint_names: tuple[str, ...], curve: Curve, duration: float) -> JointTrajectory:
