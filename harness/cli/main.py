@@ -242,7 +242,7 @@ def parser_of(words: Sequence[str]) -> Parser:
         help=argparse.SUPPRESS,
     )
     known = registry("command")
-    named = [word for word in words[:1] if word in known.built_in_names]
+    named = [word for word in words[:1] if word in known.built_in_modules]
     commands: dict[str, Command] = {name: known[name]() for name in named or _all_commands()}
     for name, command in commands.items():
         added = parsers.add_parser(name, description=command.summary())
@@ -277,7 +277,7 @@ def _all_commands() -> list[str]:
     try:
         broken, names = broken_plugins(), list(known)
     except PluginError as error:
-        broken, names = [str(error)], list(known.built_in_names)
+        broken, names = [str(error)], list(known.built_in_modules)
     for reason in broken:
         complain(f"harness: {reason}")
     return names

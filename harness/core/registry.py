@@ -21,7 +21,7 @@ import os
 import pkgutil
 import sys
 import traceback
-from collections.abc import Collection, Generator, Iterable, Iterator, Mapping, Set
+from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cached_property
@@ -119,7 +119,7 @@ class Registry(Mapping[str, P]):
         Raises:
             PluginError: Another package provides this name.
         """
-        built_in = (None, OWN_PACKAGE if name in self._built_in_modules else "")
+        built_in = (None, OWN_PACKAGE if name in self.built_in_modules else "")
         known, owner = self._plugins.get(name, built_in)
         if known is plugin:
             return
@@ -155,47 +155,38 @@ class Registry(Mapping[str, P]):
         raise LookupError("; ".join([f"there is no {self._what} '{name}'", *hints]))
 
     def __getitem__(self, name: str) -> P:
-        if name not in self._built_in_modules:
+        if name not in self.built_in_modules:
             load_installed()
         elif name not in self._plugins:
             with _loading(OWN_PACKAGE):
-                register_module(importlib.import_module(self._built_in_modules[name]))
+                register_module(importlib.import_module(self.built_in_modules[name]))
         return self._plugins[name][0]
 
     def __contains__(self, name: object) -> bool:
-        if name in self._built_in_modules:
+        if name in self.built_in_modules:
             return True
         load_installed()
         return name in self._plugins
 
     def __iter__(self) -> Iterator[str]:
         load_installed()
-        others = sorted(name for name in self._plugins if name not in self._built_in_modules)
-        return iter([*self._built_in_modules, *others])
+        others = sorted(name for name in self._plugins if name not in self.built_in_modules)
+        return iter([*self.built_in_modules, *others])
 
     def __len__(self) -> int:
         return len(list(iter(self)))
 
     def built_in(self) -> list[P]:
         """The built-in plug-ins, for which no installed package is loaded."""
-        return [self[name] for name in self._built_in_modules]
+        return [self[name] for name in self.built_in_modules]
 
     def module_of(self, name: str) -> str:
         """The module that defines a plug-in, or is a built-in one."""
-        return self._built_in_modules.get(name) or str(getattr(self[name], "__module__", ""))
-
-    def built_in_modules(self) -> tuple[str, ...]:
-        """The modules of the built-in plug-ins."""
-        return tuple(self._built_in_modules.values())
-
-    @property
-    def built_in_names(self) -> Set[str]:
-        """The names of the built-in plug-ins, which may not be imported yet."""
-        return self._built_in_modules.keys()
+        return self.built_in_modules.get(name) or str(getattr(self[name], "__module__", ""))
 
     @cached_property
-    def _built_in_modules(self) -> dict[str, str]:
-        """Module of each built-in by its name.
+    def built_in_modules(self) -> dict[str, str]:
+        """Module of each built-in by its name; they may not be imported yet.
 
         The module of a name that is a keyword has an underscore; names of commands have hyphens.
         """
@@ -285,7 +276,7 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
 def import_built_in(kinds: Collection[str], words: Collection[str]) -> None:
     """Import the built-in plug-ins that words name, for this process and its forks."""
     for found in (_registries[kind] for kind in kinds):
-        for name in found.built_in_names & set(words):
+        for name in found.built_in_modules.keys() & set(words):
             found[name]
 
 
@@ -296,7 +287,7 @@ def built_in_class(kind: str, name: str) -> Any:
         AttributeError: There is none.
     """
     found = _registries[kind]
-    for word in found.built_in_names if name[:1].isupper() else ():
+    for word in found.built_in_modules.keys() if name[:1].isupper() else ():
         starts = name.lower().startswith(word.replace("_", ""))
         if starts and found[word].__name__ == name:
             return found[word]

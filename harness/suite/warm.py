@@ -39,7 +39,7 @@ RUN_MODULES = (
 
 REPORT_MODULES = (
     "harness.session.observation.looks_differ",
-    *registry("camera_recorder").built_in_modules(),
+    *registry("camera_recorder").built_in_modules.values(),
     "harness.reporting.html.write",
     "jinja2",
     "numpy.ma",

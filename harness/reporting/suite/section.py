@@ -29,4 +29,4 @@ class SuiteSection(Plugin, ABC):
 def sections(columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> dict[str, Any]:
     """The content of each built-in section by its name."""
     known = registry(SuiteSection.plugin_kind)
-    return {name: known[name]().content(columns, cases, folder) for name in known.built_in_names}
+    return {name: known[name]().content(columns, cases, folder) for name in known.built_in_modules}

@@ -39,7 +39,7 @@ class NewCommand(Command):
         command.add_argument("--project", metavar="DIR", type=output_path, default="", help=text)
         command.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
         add_robot_options(command)
-        names = list(registry("starter").built_in_names)
+        names = list(registry("starter").built_in_modules)
         if names:
             text = "write a whole folder for this grading system in place of a scenario"
             command.add_argument("--assignment", choices=names, default="", help=text)

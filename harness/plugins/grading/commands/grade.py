@@ -129,7 +129,7 @@ class GradeCommand(Command):
 
 def _runners() -> list[CaseRunner]:
     """What can run the programs of a student; nothing where ROS 2's plug-in is absent."""
-    return [case_runner("nodes")] if "nodes" in registry("case_runner").built_in_names else []
+    return [case_runner("nodes")] if "nodes" in registry("case_runner").built_in_modules else []
 
 
 def _object_topic(text: str) -> tuple[str, str]:
