@@ -74,6 +74,9 @@ contacts at the samples |
 | held object is nearer | `clearance` of the robot and an object, to which something that the hand \
 holds, or carries on what it holds, comes nearer than the links may; not of what is taken from it \
 or put on it |
+| held on a running belt | `placed` of an object on a surface that runs at the end: a stop keeps \
+it there, and not its support |
+| held by a weld | `inserted` of a peg that is welded to the hand |
 | no collision shapes | `collision`, `in_contact` or `clearance` of a robot with moving links \
 that have no collision shapes: they pass through everything |
 

@@ -340,6 +340,20 @@ RULES = (
         ),
     ),
     Rule(
+        "What holds at the end holds by itself",
+        "A joint or an object is where it is at the end, wherever it was before. What"
+        f" [`placed`]({EXPECTATIONS}#placed) finds at rest on a surface that runs is kept there by"
+        " something else, and it passes with a warning. Of what two hands hold, nothing is"
+        " released.",
+        (
+            "box that a wall holds on a running belt",
+            "lid that fell shut",
+            "drawer that a spring closed",
+            "rod that both hands hold",
+        ),
+        ("box at the wall of a belt that was stopped",),
+    ),
+    Rule(
         "What is not checked is said",
         "`contact may be missed` is a warning where a point of an object moves between two samples"
         " by more than both least widths: it is before the other at one and past it at the next;"

@@ -15,7 +15,7 @@ from harness.recording.run import Run
 
 HEAD = """
 scenario: {title}
-robot: {robot}
+{robot}
 world: {world}
 """
 RED_BOX = "  - {name: red_box, box: {size: [0.04, 0.04, 0.08]}, pose: {xyz: [0.25, 0, 0.041]}, "
@@ -47,7 +47,7 @@ class Scene:
         stays: Expectations that hold in the same run, so that nothing is refused wholesale.
         world: Its world.
         warned: Expectations that hold with a warning, and fail a strict run.
-        robot: Its robot.
+        robot: Its robot, or its `robots:`.
         files: Text of the files that it names.
         truth: What happens, from poses and forces alone; it shares no code with the verdicts.
     """
@@ -69,8 +69,9 @@ class Scene:
         """The scenario file."""
         world = folder_world if self.world == "weightless" else self.world
         lines = "".join(f"  - {each}\n" for each in (*self.expect, *self.warned, *self.stays))
+        robot = self.robot if self.robot.startswith("robots:") else f"robot: {self.robot}"
         return (
-            HEAD.format(title=self.title, world=world, robot=self.robot)
+            HEAD.format(title=self.title, world=world, robot=robot)
             + self.text
             + "expect:\n"
             + lines

@@ -8,6 +8,7 @@ from pathlib import Path
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.adversarial.carried_scenes import CARRIED_SCENES
+from tests.adversarial.cell_scenes import CELL_SCENES
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
@@ -32,6 +33,7 @@ ALL_SCENES = (
     *FIXTURE_SCENES,
     *CARRIED_SCENES,
     *FRAME_SCENES,
+    *CELL_SCENES,
 )
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"

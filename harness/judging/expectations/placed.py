@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -39,12 +40,12 @@ from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import JUMP, UP, frame_poses, object_poses, present, start_samples
 from harness.judging.support import required_support, standing, supports
-from harness.judging.window import Window, object_record
+from harness.judging.window import Window, object_record, window_of
 from harness.language.base import Name, RestSpeed, RestTurning
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose, PoseTolerance
 from harness.recording.run import Run
-from harness.recording.verdict import Measure
+from harness.recording.verdict import Measure, Verdict, VerdictWarning
 
 PLACE_POSITION = 0.01  # tolerance of `placed` with a pose and no tolerance [m]
 PLACE_TILT = 0.1  # and how far it may lean from the given pose, turns about the vertical free [rad]
@@ -67,7 +68,8 @@ class Placed(ObjectPredicate):
 
     A `pose` without a rotation allows every turn about the vertical after which the object's
     collision shapes are the same. It is still where it was slow for 50 ms, which may begin before
-    the step's window.
+    the step's window. Where a surface runs under it, as a belt below what a stop holds, it passes
+    with a warning: its support does not keep it there.
     """
 
     sentence = "{object} is placed[ on {on}][ at {pose}]"
@@ -131,15 +133,25 @@ class Placed(ObjectPredicate):
             every = supports(run, name)
             below = [each for each in carried if every[each][sample] > TOUCH_FORCE]
             held = [each for each in below if carried[each][sample] <= TOUCH_FORCE]
-            rests = f"rests on {' and '.join(below) or 'nothing'}"
-            if self.on is not None and not below:
-                rests = f"does not rest on {self.on}"
+            missed = "rests on nothing" if self.on is None else f"does not rest on {self.on}"
+            rests = f"rests on {' and '.join(below)}" if below else missed
             rests += f", and the robot carries {' and '.join(held)}" if held else ""
             return f"{name} {rests}; {_against(tightest)}"
 
         here = present(run, name)
         judged = rest_is_known(window, here)
         return all_of(window, parts, text, present=window.cut(here), applies=judged)
+
+    def verdict(self, run: Run, step: str) -> Verdict:
+        answer, end = super().verdict(run, step), window_of(run, step).stop - 1
+        surfaces, forces = run.signals.surfaces, supports(run, self.object)
+        below = [each for each, force in forces.items() if force[end] > 0 and each in surfaces]
+        running = [each for each in below if surfaces[each][end].any()]
+        if answer.status != "passed" or not running:
+            return answer
+        why = f"{running[0]} runs under {self.object}, so that something else keeps it there"
+        found = (*answer.warnings, VerdictWarning("held on a running belt", why))
+        return replace(answer, warnings=found)
 
     def unchanged(self, window: Window) -> str:
         run, name = window.run, self.object
@@ -152,11 +164,8 @@ class Placed(ObjectPredicate):
         for base in dict.fromkeys(("world", frame, *carriers)):
             if _moved(run, name, base, since) <= JUMP:
                 on = "" if base == "world" else f" on {base}"
-                since_then = "a step put it there" if begin else "the run began"
-                return (
-                    f"the robot never touched {name}, and it stands where it stood{on} when"
-                    f" {since_then}"
-                )
+                at = "a step put it there" if begin else "the run began"
+                return f"the robot never touched {name}, and it stands where it stood{on} when {at}"
         return ""
 
     def _at_pose(self, window: Window) -> list[Part]:
@@ -167,23 +176,18 @@ class Placed(ObjectPredicate):
         actual = object_poses(run, self.object)
         distance = window.cut(np.linalg.norm(actual[:, :3] - target[:, :3], axis=1))
         points = (window.cut(target[:, :3]), window.cut(actual[:, :3]))
-        up_in_target = rotate(conjugate(target[:, 3:]), UP)
-        up_in_actual = rotate(conjugate(actual[:, 3:]), UP)
-        lean = window.cut(angle_between(up_in_target, up_in_actual))
+        ups = (rotate(conjugate(each[:, 3:]), UP) for each in (target, actual))
+        lean = window.cut(angle_between(*ups))
+        most = PLACE_POSITION if self.tolerance is None else self.tolerance.position
+        place = Part(POSITION, distance, most, "<=", points=points)
         if self.tolerance is None:
-            return [
-                Part(POSITION, distance, PLACE_POSITION, "<=", points=points),
-                Part(LEAN, lean, PLACE_TILT, "<="),
-            ]
+            return [place, Part(LEAN, lean, PLACE_TILT, "<=")]
         turns = 1
         if not self.pose.has_rotation:
             stated = rotation_from_quat_wxyz(target[window.stop - 1, 3:])
             turns = equal_turns(object_record(run, self.object).shapes, stated)
         turn = lean if turns == ANY else window.cut(_turned(target[:, 3:], actual[:, 3:], turns))
-        return [
-            Part(POSITION, distance, self.tolerance.position, "<=", points=points),
-            Part(ORIENTATION, turn, self.tolerance.orientation, "<="),
-        ]
+        return [place, Part(ORIENTATION, turn, self.tolerance.orientation, "<=")]
 
 
 def _moved(run: Run, name: str, base: str, samples: slice) -> float:
@@ -194,13 +198,7 @@ def _moved(run: Run, name: str, base: str, samples: slice) -> float:
 
 
 def _turned(target: FloatArray, actual: FloatArray, turns: int) -> FloatArray:
-    """Largest turn about an axis of the target [rad], shape (N,), `turns` about the vertical alike.
-
-    Args:
-        target: Quaternions, shape (N, 4).
-        actual: Quaternions, shape (N, 4).
-        turns: After so many equal turns about the vertical the object has gone round once.
-    """
+    """Largest turn about an axis [rad], (N,), of quaternions (N, 4); `turns` a round are alike."""
     angles = np.pi * np.arange(turns) / turns  # half of them: of quaternions
     alike = [np.array([np.cos(angle), 0, 0, np.sin(angle)]) for angle in angles]
     off = [quat_product(conjugate(target), quat_product(turn, actual)) for turn in alike]
