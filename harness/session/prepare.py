@@ -29,7 +29,6 @@ from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot, load_scenario_robot
-from harness.session.arm_bases import refuse_overlapping_bases
 from harness.session.compile import Sources, compile_scenario
 from harness.session.observation.findings import about_file
 from harness.world.imported import ImportedWorld
@@ -123,8 +122,6 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
     missing: frozenset[Prerequisite] = reading.missing
     try:
         description = _robot(loaded)
-        if loaded.scenario.robots is not None:
-            refuse_overlapping_bases(loaded, description)
     except SpecError as error:
         problems += error.problems
         missing |= ROBOT

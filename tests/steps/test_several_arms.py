@@ -156,10 +156,11 @@ def test_one_arm_or_several(tmp_path):
 @pytest.mark.parametrize("y", [0.3, 0.24])
 def test_arms_whose_bases_stand_inside_each_other(y, tmp_path):
     robot = PAIR.replace("[0, -0.3, 0]", f"[0, {y}, 0]")
-    [(line, message, hint)] = found(tmp_path, "  - wait: 1\n", robot=robot)
+    [(line, message, _)] = found(tmp_path, "  - wait: 1\n", robot=robot)
     assert line == 4
-    assert message.startswith("'left' and 'right' stand inside each other: left_base_link_inertia")
-    assert hint == "give one of them another `base`"
+    pair = "'left' and 'right' stand inside each other: left_base_link_inertia"
+    assert message.startswith(f"robots.right.base: {pair}")
+    assert message.endswith("give one of them another `base`")
 
 
 SWAP = f"""

@@ -16,6 +16,9 @@ class SeveralArms(RobotOption):
 
     def joined(self, robots: Mapping[str, RobotDescription]) -> RobotDescription:
         """One robot of several."""
+        from harness.plugins.assembly.arm_bases import refuse_overlapping_bases
         from harness.plugins.assembly.several_arms import joined_arms
 
-        return joined_arms(robots)
+        joined = joined_arms(robots)
+        refuse_overlapping_bases(joined)
+        return joined

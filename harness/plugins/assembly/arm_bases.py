@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from itertools import combinations, product
 
-from harness.core.errors import SpecError
+from harness.core.errors import RobotOptionError
 from harness.core.kinematics import LinkPoses
-from harness.language.reading.load import LoadedScenario
 from harness.robot.description import RobotDescription
 from harness.session.observation.body_tracks import MovingBody, link_track, links_with_shapes
 from harness.session.observation.nearest import pairs_between
@@ -14,11 +13,11 @@ from harness.session.observation.nearest import pairs_between
 LEAST_DEPTH = 0.001  # convex hulls are off by as much; less is no overlap [m]
 
 
-def refuse_overlapping_bases(loaded: LoadedScenario, robot: RobotDescription) -> None:
+def refuse_overlapping_bases(robot: RobotDescription) -> None:
     """Refuse arms of `robots` whose links that never move overlap.
 
     Raises:
-        SpecError: Two do; at the second one's `base`.
+        RobotOptionError: Two do; at the second one's `base`.
     """
     shapes = links_with_shapes({link.name: link.collisions for link in robot.links})
     poses = LinkPoses(robot.joints, robot.start_positions()[None])
@@ -34,8 +33,7 @@ def refuse_overlapping_bases(loaded: LoadedScenario, robot: RobotDescription) ->
                     f" by {1e3 * depth:.0f} mm"
                 )
                 hint = "give one of them another `base`"
-                loc = ("robots", second, "base")
-                raise SpecError([loaded.lines.problem(loc, message, hint)])
+                raise RobotOptionError(f"{second}.base", f"{message}; {hint}", "robots")
 
 
 def _fixed_links(robot: RobotDescription, base: str) -> set[str]:
