@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, cast
+from typing import Any, Literal, NamedTuple, cast
 
 from harness.core.errors import HarnessError
 from harness.core.types import FloatArray
 from harness.judging.recorded import Unreadable
-from harness.recording.looks import PictureKind
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, Signals
+
+PictureKind = Literal["color", "depth", "segmentation"]
 
 CLEARANCE_CUTOFF = 0.15  # distances that every run records are exact up to here [m]
 CLEARANCE_ROOM = 0.05  # [m], by which distances go beyond a limit, so that margins are seen

@@ -18,20 +18,12 @@ from harness.core.errors import HarnessError
 
 T = TypeVar("T")
 
-_is_forking = True
-
-
-def compute_here() -> None:
-    """Fork no process from now on unless that is requested: every core has work already."""
-    global _is_forking
-    _is_forking = False
-
 
 class Background(Generic[T]):
     """The value of a function, from a fork of this process.
 
-    A process that has threads, or has called `compute_here`, computes the value itself when it is
-    needed. The function must not have other effects: an interruption leaves nothing half-written.
+    A process that has threads computes the value itself when it is needed. The function must not
+    have other effects: an interruption leaves nothing half-written.
     """
 
     def __init__(self, function: Callable[[Activity], T], *, despite_threads: bool = False) -> None:
@@ -44,7 +36,7 @@ class Background(Generic[T]):
         self._function: Callable[[Activity], T] | None = function
         self._pid = 0
         has_threads = len([*Path("/proc/self/task").iterdir()]) > 1  # native libraries' included
-        if not (despite_threads or (_is_forking and not has_threads)):
+        if has_threads and not despite_threads:
             return
         self._reading, writing = Pipe(duplex=False)
         with warnings.catch_warnings():

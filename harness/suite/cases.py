@@ -106,13 +106,6 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
     forget_inputs()
 
 
-def compute_here() -> None:
-    """Let each case that this process forks do with one process, as every core has a case."""
-    from harness.session import background  # not before a case needs it
-
-    background.compute_here()
-
-
 def run_here(
     jobs: Sequence[RunRequest],
     *,
@@ -162,7 +155,7 @@ def run_isolated(
     upcoming = iter(range(len(jobs)))
     running: dict[int, _Running] = {}
     if function is run_job:
-        _prepare(server, jobs, workers)
+        _prepare(server, jobs)
     try:
         while True:
             while len(running) < workers and (index := next(upcoming, None)) is not None:
@@ -195,13 +188,11 @@ def run_isolated(
         raise
 
 
-def _prepare(server: WarmServer, jobs: Sequence[RunRequest], workers: int) -> None:
+def _prepare(server: WarmServer, jobs: Sequence[RunRequest]) -> None:
     """Let the server import and read what the cases have in common."""
     server.prepare(read_ahead, _words(jobs), jobs[:1] if len(jobs) > 1 else [])
     if len(jobs) > 1:
         server.prepare(preload, REPORT_MODULES)
-    if min(workers, len(jobs)) >= len(os.sched_getaffinity(0)):
-        server.prepare(compute_here)
 
 
 def _words(jobs: Sequence[RunRequest]) -> frozenset[str]:

@@ -33,14 +33,6 @@ def test_another_process_computes_the_value():
     assert value == "x" * 100_000
 
 
-def test_a_process_whose_cores_have_work_computes_the_value_itself():
-    here, there = in_a_process_without_threads(
-        "from harness.session.background import compute_here; compute_here()\n"
-        "print(os.getpid(), Background(lambda _: os.getpid()).result(unobserved))"
-    )
-    assert here == there
-
-
 def test_its_progress_is_reported_and_what_it_raises_is_raised():
     assert in_a_process_without_threads(
         "def work(activity):\n"

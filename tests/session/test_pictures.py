@@ -51,7 +51,8 @@ def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_pa
 APART_OR_HERE = """
 import sys
 from pathlib import Path
-from harness.session import background, run_case as session
+from threading import Event, Thread
+from harness.session import run_case as session
 from harness.session.run_request import RunRequest
 
 found = []
@@ -59,7 +60,7 @@ for name in ("apart", "here"):
     folder = Path(sys.argv[1]).parent / name
     session.run_case(RunRequest(Path(sys.argv[1]), report_dir=folder, page=False))
     found.append({file.name: file.read_bytes() for file in (folder / "images").iterdir()})
-    background.compute_here()
+    Thread(target=Event().wait, daemon=True).start()
 print(len(found[0]), found[0] == found[1])
 """
 

@@ -5,8 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from harness.recording.looks import PictureKind, TakenPicture
+from harness.core.details import Detail
+from harness.judging.observations import PictureKind
 from harness.recording.step_record import StepRecord
+
+
+@dataclass(frozen=True)
+class TakenPicture(Detail):
+    """What a step took with a camera: the recorded sample of the pictures, and its time [s]."""
+
+    camera: str
+    kinds: tuple[PictureKind, ...]
+    time: float
+    sample: int
 
 
 @dataclass(frozen=True)

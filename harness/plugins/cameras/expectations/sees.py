@@ -15,7 +15,7 @@ from harness.core.extras import absent_package
 from harness.core.types import FloatArray, IntArray
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.observations import Observations, PictureRequest
+from harness.judging.observations import Observations, PictureKind, PictureRequest
 from harness.judging.window import NotObservable, Window
 from harness.judging.words import HARDLY_OBSERVED
 from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
@@ -23,7 +23,6 @@ from harness.language.expectation import Quantity
 from harness.language.markers import MarkerName
 from harness.plugins.cameras.pixels import blob_pixels, label_pixels, marker_pixels
 from harness.plugins.cameras.watched import WATCH_RATE, period
-from harness.recording.looks import PictureKind
 from harness.recording.signals import CaptureRecord
 from harness.recording.verdict import Measure, VerdictWarning
 

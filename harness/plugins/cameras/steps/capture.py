@@ -11,7 +11,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.cell.step import Step
 from harness.language.base import Name
-from harness.recording.looks import TakenPicture
+from harness.plugins.cameras.looks import TakenPicture
 
 MOST_CAPTURES = 1000  # pictures that the steps of a file take; one of 640 x 480 takes 0.2 s
 

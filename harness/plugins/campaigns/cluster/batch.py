@@ -24,7 +24,7 @@ from typing import Any
 from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
-from harness.suite.cases import compute_here, run_isolated
+from harness.suite.cases import run_isolated
 from harness.suite.installation import Installation, installation
 from harness.suite.leftovers import remove_abandoned
 from harness.suite.stream import result_of
@@ -140,7 +140,6 @@ class _Place:
             }
         )
         os.chdir(folder)  # the fork server begins here
-        self.server.prepare(compute_here)  # a task has one core
 
     def close(self) -> None:
         """End the fork server and remove the files."""
