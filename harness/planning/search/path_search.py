@@ -14,29 +14,22 @@ from harness.planning.search.find_pipeline import find_pipeline
 from harness.planning.search.third_party import find_third_party_path
 from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
 from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
-from harness.ports.path_planning import PathPlanner, PathRequest
+from harness.ports.path_planning import PathPlanner, PathRequest, PathResult
 
 SEARCHES = 6  # of an attempt, from other seeds, while no path becomes a verified motion
 
 
 @dataclass(frozen=True, eq=False)
-class Search:
-    """The result of a planner.
+class Search(PathResult):
+    """The result of a planner; of a pipeline other than `ompl`, its name begins the planner's.
 
     Attributes:
-        waypoints: The path, shape (N, dof), or None when there is none.
-        gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved,
-            None if unknown.
-        planner_id: The planner's name; of a pipeline other than `ompl`, the pipeline's name first.
+        checks: The number of state checks.
         seed: The seed of the search, and of what is made of the path.
     """
 
-    waypoints: FloatArray | None
-    checks: int
-    vertices: int
-    gap: float | None
-    planner_id: str
-    seed: int
+    checks: int = 0
+    seed: int = 0
 
 
 def search(
@@ -79,7 +72,7 @@ def search(
     prefix = "" if pipeline == DEFAULT_PIPELINE else pipeline
     parts = (prefix, found.planner_id or request.planner_id)
     name = "/".join(part for part in parts if part)
-    return Search(found.waypoints, checker.checks - before, found.vertices, found.gap, name, seed)
+    return Search(found.waypoints, found.vertices, found.gap, name, checker.checks - before, seed)
 
 
 @dataclass(eq=False)
@@ -89,12 +82,10 @@ class Effort:
     Attributes:
         checks: The state checks of all searches.
         gaps: The remaining distances of the searches that failed, where they are known [rad].
-        planner_id: The planner of the last search.
     """
 
     checks: int = 0
     gaps: list[float] = field(default_factory=list[float])
-    planner_id: str = ""
     attempts: int = 0
 
 
@@ -117,7 +108,6 @@ def verified_paths(
             seed = _derived_seed(options.seed, attempt, number)
             result = search(options, checker, start, goals, max_state_checks=left, seed=seed)
             effort.checks += result.checks
-            effort.planner_id = result.planner_id
             left -= result.checks
             if result.waypoints is None:
                 effort.gaps += [] if result.gap is None else [result.gap]
