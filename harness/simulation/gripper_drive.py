@@ -112,7 +112,7 @@ class GripperDrive:
 
     def _forces(self) -> dict[str, dict[str, float]]:
         last = self._recording.count
-        touching = self._recording.contacts(last - 1, last)
+        touching = self._recording.contacts.forces(last - 1, last)
         robot = set(self._simulator.description.link_names)
         forces: dict[str, dict[str, float]] = {side: {} for side in self._gripper.sides}
         for side, links in self._gripper.sides.items():
@@ -132,7 +132,8 @@ class GripperDrive:
         adhesion = self._simulator.adhesion
         if adhesion is not None and self._gripper.cups:
             return tuple(sorted(adhesion.held(self._recording.count - 1, self._gripper)))
-        presses = self._recording.presses(max(0, self._recording.count - CHECK_EVERY))
+        last = self._recording.count
+        presses = self._recording.contacts.presses(max(0, last - CHECK_EVERY), last)
         found: list[str] = []
         for name, place in self._simulator.physics.objects.items():
             sides = [

@@ -43,7 +43,7 @@ class MujocoSimulator(TrajectoryTracking):
         last = self._recording.count
         first = max(0, last - max(1, round(span / self._timestep)))
         own = {*self.description.link_names, *held}
-        pairs = self._recording.contacts(first, last)
+        pairs = self._recording.contacts.forces(first, last)
         forces = (force for pair, force in pairs.items() if (pair[0] in own) != (pair[1] in own))
         return float(sum(float(force.mean()) for force in forces))
 

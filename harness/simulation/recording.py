@@ -40,6 +40,7 @@ class Recording:
 
     Attributes:
         longest: The most simulated time of the run [s].
+        contacts: The contacts of all samples.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class Recording:
         self._sensors = np.empty((ROWS, model.nsensordata))
         self._commands = np.empty((ROWS, model.nu))
         self._command_velocities = np.empty((ROWS, model.nu))
-        self._contacts = ContactRecord(physics, data)
+        self.contacts = ContactRecord(physics, data)
         self.count, self.longest = 0, LONGEST_RUN
 
     def start(self, command: FloatArray) -> None:
@@ -93,7 +94,7 @@ class Recording:
         forward, check, integrate = mujoco.mj_forward, mujoco.mj_checkAcc, mujoco.mj_implicit
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
         positions, velocities, sensed = self._qpos, self._qvel, self._sensors
-        keep_contacts = self._contacts.keep
+        keep_contacts = self.contacts.keep
         adhesion = self._adhesion
         for row in range(first, first + steps):
             control[:] = controls[row - first]
@@ -128,7 +129,7 @@ class Recording:
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))
-        size = (self.count + steps) * per_row + BYTES * self._contacts.count
+        size = (self.count + steps) * per_row + BYTES * self.contacts.count
         if size > MOST_BYTES:
             raise StepFailed(
                 "TIMED_OUT",
@@ -141,7 +142,7 @@ class Recording:
     def rewind(self, count: int) -> None:
         """Forget all samples after the first `count`; the physics stands at the last one kept."""
         self.count = count
-        self._contacts.rewind(count)
+        self.contacts.rewind(count)
         self.wrenches.rewind(count)
         if self._adhesion is not None:
             self._adhesion.rewind(count)
@@ -149,7 +150,7 @@ class Recording:
     def replace_last(self, command: FloatArray) -> None:
         """Make the last sample the current state, after a change that was not recorded."""
         row = self.count - 1
-        self._contacts.rewind(row)
+        self.contacts.rewind(row)
         self._qpos[row], self._qvel[row] = self._data.qpos, self._data.qvel
         self._commands[row], self._command_velocities[row] = command, 0.0
         self._record_forces_of_last_row()
@@ -158,7 +159,7 @@ class Recording:
         """Record the forces of the current state without changing the physics state."""
         refresh(self._physics.model, self._data)
         self._sensors[self.count - 1] = self._data.sensordata
-        self._contacts.keep(self.count - 1)
+        self.contacts.keep(self.count - 1)
 
     def _refuse_divergence(self, first: int) -> None:
         rows = self._qpos[first : self.count], self._qvel[first : self.count]
@@ -172,7 +173,7 @@ class Recording:
         )
 
     def _reserve(self, rows: int) -> None:
-        self._contacts.reserve(rows)
+        self.contacts.reserve(rows)
         if rows <= len(self._qpos):
             return
         for name in ("_qpos", "_qvel", "_sensors", "_commands", "_command_velocities"):
@@ -250,20 +251,12 @@ class Recording:
         poses = replayed_link_poses(physics.description, positions, [sensor.link])[sensor.link]
         return payload.weight(sensor, poses, physics.model.opt.gravity)
 
-    def contacts(self, first: int, last: int) -> Mapping[BodyPair, FloatArray]:
-        """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
-        return self._contacts.forces(first, last)
-
-    def presses(self, first: int) -> Mapping[BodyPair, FloatArray]:
-        """Contact points and normal forces of the robot's links from a sample on, (N, 6) each."""
-        return self._contacts.presses(first, self.count)
-
     def strongest_robot_contacts(self, row: int) -> dict[BodyPair, float]:
         """Largest force [N] of each pair with a robot link just before a sample, largest first."""
         links = set(self._physics.description.link_names)
         peaks = {
             pair: float(force.max())
-            for pair, force in self.contacts(max(0, row - LOOK_BACK), row + 1).items()
+            for pair, force in self.contacts.forces(max(0, row - LOOK_BACK), row + 1).items()
             if pair[0] in links
         }
         return dict(sorted(peaks.items(), key=lambda item: -item[1]))
@@ -290,7 +283,7 @@ class Recording:
         command_velocities[:, physics.actuated] = self._command_velocities[rows]
         efforts[:, physics.actuated] = self._sensors[rows, self._effort_columns]
         frames = self._sensors[rows, :frame_end].reshape(count, -1, 7)
-        contacts = self._contacts.forces(first, last)
+        contacts = self.contacts.forces(first, last)
         moved = {name: rows * self.timestep for name, rows in surfaces.items()}
         return Signals(
             times=self.times()[first:],
@@ -303,14 +296,14 @@ class Recording:
             frames={name: frames[:, i + 1].copy() for i, name in enumerate(physics.frames)},
             object_poses=dict(object_poses),
             contact_forces=contacts,
-            support_forces=self._contacts.support_forces(first, last),
-            presses=self._contacts.presses(first, last),
-            frictions=self._contacts.frictions(first, last),
+            support_forces=self.contacts.support_forces(first, last),
+            presses=self.contacts.presses(first, last),
+            frictions=self.contacts.frictions(first, last),
             pulls={}
             if self._adhesion is None
             else {pair: values[first:] for pair, values in self._adhesion.recorded(last).items()},
             wrenches={name: self.wrench(name, first) for name in self.wrenches.sensors},
-            slides=self._contacts.slides(
+            slides=self.contacts.slides(
                 first, last, object_poses, self._moved_by_robot(contacts), moved
             ),
             surfaces=dict(surfaces),
