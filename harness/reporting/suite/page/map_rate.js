@@ -38,7 +38,7 @@ function drawCell(pen, { x, y, width, height, failed, all }) {
   pen.globalAlpha = 1;
   if (!failed || width <= 28) return;
   pen.fillStyle = color(share > 0.6 ? "--panel" : "--text"); pen.textAlign = "center"; pen.textBaseline = "middle";
-  pen.fillText(`${Math.round(100 * share)}%`, x + width / 2, y + height / 2);
+  pen.fillText(`${Math.round(failed)}/${Math.round(all)}`, x + width / 2, y + height / 2);
 }
 
 /** The cell at a place. @param {Cell[]} cells @returns {Cell | null} */
