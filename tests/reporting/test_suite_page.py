@@ -48,6 +48,19 @@ def test_it_lists_everything_and_hostile_names_stay_text(small, visit):
     assert link.endswith("a/pick/c1/report.html#t=2.00&expect=2")
 
 
+def test_samples_of_one_file_are_named_without_what_they_share(visit, tmp_path):
+    cases = [SuiteCase(passed(each), {"x": each / 10}, ("ur",)) for each in range(3)]
+    seen = visit(write_suite(tmp_path, SuiteRecord("passed", cases), 0)[0])
+    assert [each.strip() for each in seen.page.locator("tr.case .title").all_inner_texts()] == [
+        "c0",
+        "c1",
+        "c2",
+    ]
+    assert "x 0.2" in seen.text("tbody")
+    assert "pick.scenario.yaml" not in seen.text("tbody")
+    assert not seen.page.locator("td.still").first.is_visible(), "a column of pictures without one"
+
+
 def test_the_time_of_the_suite_is_not_the_sum_of_its_cases(small, visit, tmp_path):
     assert "the cases add up to 0.2 s" in visit(small).text("#outcomes")
     page = write_suite(tmp_path, replace(small_suite(), wall=200.0), 3)[0]

@@ -51,7 +51,7 @@ def comparison_page(
         title=first.run.scenario,
         names=[printable(name) for name in names],
         outcome="same" if comparison.is_same else "different",
-        tone="good" if comparison.is_same else "bad",
+        tone="good" if comparison.is_same else "open",
         parting=text,
         groups=groups,
         facts=Packer().text(facts),

@@ -11,6 +11,7 @@ export function startTable(payload) {
   const body = document.querySelector("#cases tbody"), count = document.getElementById("count");
   const more = document.querySelector("#cases .more"), columns = document.querySelectorAll("#cases thead th").length;
   const total = payload.run.rows.length, pictures = new Map();
+  const isOneFile = total > 1 && payload.run.rows.every(({ file, case: name, tags }) => name && file === payload.run.rows[0].file && String(tags) === String(payload.run.rows[0].tags));
   let waiting = [], folded = new Set();
 
   /** The address of a row's picture, which is made once. */
@@ -51,14 +52,15 @@ export function startTable(payload) {
   }
 
   function caseRow(row) {
-    const name = row.link ? element("a", { href: row.link }, row.name) : row.name;
+    const shown = isOneFile ? row.case : row.name; // the title, the file and its tags are the same in every row
+    const name = row.link ? element("a", { href: row.link }, shown) : shown;
     const still = row.picture && element("img", { src: picture(row.picture), alt: `the moment that decided ${row.name}`, loading: "lazy" });
     const made = element(`tr.case`, { "data-outcome": row.outcome, "data-share": row.share },
       element("td", {}, element(`i.sign.${row.outcome}`), element("span.quiet", {}, row.outcome)),
       element("td.still", {}, row.link && still ? element("a", { href: row.link, tabindex: -1 }, still) : still),
       element("td.about", {},
-        element("span.title", {}, name, ...row.tags.map((tag) => element("span.tag", {}, tag))),
-        element("div.quiet", {}, ...breakable(row.file), ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
+        element("span.title", {}, name, ...(isOneFile ? [] : row.tags).map((tag) => element("span.tag", {}, tag))),
+        element("div.quiet", {}, ...(isOneFile ? [] : breakable(row.file)), ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
         row.why && why(row)),
       element("td.nearest", {}, ...(hasNearest(row) ? [allowance(row), element("div.quiet", {}, row.expectation)] : [])),
       payload.run.history && element("td.history", {}, row.trend && spark(row.trend)),
