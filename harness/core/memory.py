@@ -14,10 +14,17 @@ from pathlib import Path
 def free_memory() -> None:
     """Give the memory of objects that nothing refers to back to the system.
 
-    The collector is needed where objects refer to each other, and the C library keeps what was
-    freed in pieces; where it has no function that returns them, they stay.
+    The collector is needed where objects refer to each other; it looks at all that there are.
     """
     gc.collect()
+    return_memory()
+
+
+def return_memory() -> None:
+    """Give what was freed back to the system.
+
+    The C library keeps it in pieces; where it has no function that returns them, they stay.
+    """
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from weakref import proxy
 
 from harness.cell.cell import Cell
 from harness.cell.program import Program, ProgramStep
@@ -144,7 +145,7 @@ class ProgramExecution:
             planner=ports.planner,
             simulator=simulator,
             later_objects=program.later_objects,
-            runner=self._runner,
+            runner=proxy(self._runner),  # no cycle: memory is free without the collector
             cameras=program.cameras,
             external=external,
         )

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from harness.core.errors import HarnessError, SpecError
-from harness.core.memory import free_memory
+from harness.core.memory import return_memory
 from harness.judging.facts import remembered_facts
 from harness.judging.joints import stood_still
 from harness.judging.judge import judge
@@ -59,7 +59,7 @@ def run_case(
             builder, refusal = case.execute(begun)
             overlaps, draw = begun.simulator.overlaps_at_start, begun.draw
             del begun  # the simulator is the largest object; the builder holds its recording
-            free_memory()
+            return_memory()
             with remembered_facts():
                 run = case.observe(builder)
                 result = case.judge(run, overlaps, draw, refusal)

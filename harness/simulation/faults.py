@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -15,6 +15,9 @@ from harness.core.types import FloatArray
 from harness.simulation.geoms import set_smaller_frictions
 from harness.simulation.model import PhysicsModel
 from harness.simulation.step_state import wake
+
+if TYPE_CHECKING:
+    from harness.simulation.motors import Motors
 
 STALL_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of the stop that holds a stalled joint."""
@@ -30,20 +33,13 @@ _STATE = ("grip_share", "_stalled", "_deviation", "_latency", "_waiting", "_rng"
 class MujocoFaults:
     """The active faults; the simulator passes its controls through `distorted`."""
 
-    def __init__(
-        self,
-        physics: PhysicsModel,
-        data: mujoco.MjData,
-        hold: Callable[[float], None],
-        weaken: Callable[[str, float], float],
-    ) -> None:
+    def __init__(self, physics: PhysicsModel, data: mujoco.MjData, motors: Motors) -> None:
         """Begin without faults.
 
         Args:
-            hold: Keeps the last commands for a duration [s].
-            weaken: Leaves the gripper with a joint a share of its effort; returns that before.
+            motors: The simulator; a weak reference, or its memory would wait for the collector.
         """
-        self._hold, self._weaken = hold, weaken
+        self._motors = motors
         self._physics = physics
         self._data = data
         self.grip_share: dict[int, float] = {}  # by the actuator of the gripper
@@ -77,7 +73,7 @@ class MujocoFaults:
 
     def weaken_gripper(self, share: float, joint: str = "") -> float:
         """Limit a gripper to a share of its effort, now and for every later command."""
-        return self._weaken(joint, share)
+        return self._motors.weaken_gripper(joint, share)
 
     def stall_joint(self, joint: str) -> bool:
         """Hold a joint at its position by closing its range; its motor keeps pulling."""
@@ -96,7 +92,7 @@ class MujocoFaults:
         """Push free objects at their centres of mass, all at the same time."""
         bodies = [self._physics.objects[name].body for name in forces]
         self._data.xfrc_applied[bodies, :3] = list(forces.values())
-        self._hold(duration)
+        self._motors.hold(duration)
         self._data.xfrc_applied[bodies] = 0.0
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:

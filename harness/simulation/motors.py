@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from weakref import proxy
 
 import mujoco
 import numpy as np
@@ -77,7 +78,7 @@ class Motors:
         self._control = self._first_control()
         self._data.ctrl[:] = self._control
         self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
-        self.faults = MujocoFaults(self.physics, self._data, self.hold, self.weaken_gripper)
+        self.faults = MujocoFaults(self.physics, self._data, proxy(self))
         self.adhesion = adhesion_of(self.physics, self._data)
         wrenches = WrenchSensors(description.wrench_sensors.values(), timestep, seed)
         self._recording = Recording(self.physics, self._data, wrenches, self.adhesion)

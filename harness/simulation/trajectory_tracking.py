@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from weakref import proxy
 
 import numpy as np
 
@@ -31,7 +32,7 @@ class TrajectoryTracking(Motors):
     def _grippers(self) -> Mapping[str, GripperDrive]:
         """What drives each gripper, by the name of its joint."""
         return {
-            gripper.joint: GripperDrive(self, self._recording, gripper)
+            gripper.joint: GripperDrive(proxy(self), self._recording, gripper)
             for gripper in self.description.grippers
         }
 

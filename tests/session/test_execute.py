@@ -1,8 +1,14 @@
 """Steps that are expected to fail, steps in steps, and what check predicts of them."""
 
+import gc
+import weakref
+
 import pytest
 
-from tests.session.front_door import check, failures, run
+from harness.simulation import mujoco_simulator
+from harness.simulation.mujoco_simulator import MujocoSimulator
+from tests.running import run_case
+from tests.session.front_door import check, failures, file_of, run
 
 OUT_OF_REACH = "{pose: {frame: base_link, xyz: [0.9, 0, 0.3], rpy: [180 deg, 0, 0]}}"
 IN_THE_TABLE = "{pose: {frame: base_link, xyz: [0.35, 0.05, -0.03], rpy: [180 deg, 0, 0]}}"
@@ -179,3 +185,23 @@ def test_a_step_that_waits_ends_with_its_timeout(tmp_path, step, timeout):
 def test_the_rounding_of_a_step_to_samples_is_no_timeout(tmp_path, seconds, timeout):
     result, _ = run(tmp_path, f"\n- wait: {seconds} s\n  timeout: {timeout} s\n")
     assert result.outcome == "passed"
+
+
+def test_the_memory_of_a_run_is_free_without_the_collector(tmp_path, monkeypatch):
+    """It would look at all objects of the process, which takes half as long as a short run."""
+    made = []
+
+    class Watched(MujocoSimulator):
+        def __init__(self, *words, **more):
+            super().__init__(*words, **more)
+            made.append(weakref.ref(self))
+
+    monkeypatch.setattr(mujoco_simulator, "MujocoSimulator", Watched)
+    file = file_of(tmp_path, "- inject: {gripper_effort: 0.5}\n- gripper: closed")
+    gc.disable()
+    try:
+        assert run_case(file).outcome == "passed"
+        [simulator] = made
+        assert simulator() is None
+    finally:
+        gc.enable()
