@@ -184,7 +184,7 @@ def run_scene(scene, folder):
         (folder / name).write_text(text)
     path = folder / "scene.scenario.yaml"
     path.write_text(scene.scenario("weightless.yaml"))
-    result = run_case(path, report_dir=folder / "report", stills=False, strict=True)
+    result = run_case(path, report_dir=folder / "report", stills=False, page=False, strict=True)
     expected = "failed" if scene.expect or scene.warned else "passed"
     assert result.outcome == expected, (result.outcome, result.problems, result.message)
     return result, read_run(folder / "report").run

@@ -93,7 +93,7 @@ def test_the_naive_check_is_fooled_and_sees_is_not(title, tmp_path):
     text = HEAD.format(title=title, **{**PLACES, **changes})
     path = tmp_path / "scene.scenario.yaml"
     path.write_text(text + "".join(f"  - {each}\n" for each in (*refuted, *kept)))
-    result = run_case(path, report_dir=tmp_path / "report", stills=False)
+    result = run_case(path, report_dir=tmp_path / "report", stills=False, page=False)
     assert result.verdicts, (result.problems, result.message)
     assert naive(read_run(tmp_path / "report").run), "the naive check would not be fooled"
     statuses = [verdict.status for verdict in result.verdicts]

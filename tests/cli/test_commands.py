@@ -165,7 +165,9 @@ expect:
 @pytest.fixture
 def lines_run(folder):
     (folder / "lines.scenario.yaml").write_text(LINES)
-    result = run_case(Path("lines.scenario.yaml"), report_dir=folder / "run", stills=False)
+    result = run_case(
+        Path("lines.scenario.yaml"), report_dir=folder / "run", stills=False, page=False
+    )
     assert result.outcome == "passed", result
     return folder / "run"
 

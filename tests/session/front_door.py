@@ -23,7 +23,7 @@ def file_of(folder, steps, *, robot=UR, world="empty", rest=""):
 def run(folder, steps, **words):
     """The case's result, and the run as it was saved."""
     path = file_of(folder, steps, **words)
-    result = run_case(path, report_dir=folder / "report", stills=False)
+    result = run_case(path, report_dir=folder / "report", stills=False, page=False)
     assert result.outcome in ("passed", "failed"), (result.problems, result.message)
     return result, read_run(folder / "report").run
 

@@ -46,7 +46,7 @@ def overlaps(run):
 def test_an_overlap_is_reported_with_pair_and_depth_at_check_and_in_the_run(tmp_path, name):
     obj, pair, depth = SCENES[name]
     file = scene(tmp_path, obj)
-    result = run_case(file, report_dir=tmp_path / "run", stills=False)
+    result = run_case(file, report_dir=tmp_path / "run", stills=False, page=False)
     found = overlaps(read_run(tmp_path / "run").run)
     values = found[0].values
     assert set(values["pair"]) == set(pair)
@@ -71,7 +71,7 @@ def test_what_rests_or_is_apart_does_not_overlap(tmp_path, height):
 
 def test_a_collision_by_an_overlap_is_measured_by_its_depth_and_not_by_a_force(tmp_path):
     file = scene(tmp_path, SCENES["a static block in the robot"][0], "expect: [{never: collision}]")
-    result = run_case(file, report_dir=tmp_path / "run", stills=False)
+    result = run_case(file, report_dir=tmp_path / "run", stills=False, page=False)
     [verdict] = result.verdicts
     deepest = overlaps(read_run(tmp_path / "run").run)[0].values["depth"]
     assert (verdict.status, verdict.unit) == ("failed", "m")

@@ -18,7 +18,7 @@ UP = "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.02}"
 @pytest.fixture(scope="module")
 def blocks(tmp_path_factory):
     folder = tmp_path_factory.mktemp("blocks")
-    result = run_case(BLOCKS, report_dir=folder / "run", stills=False)
+    result = run_case(BLOCKS, report_dir=folder / "run", stills=False, page=False)
     return folder, result, read_run(folder / "run").run
 
 

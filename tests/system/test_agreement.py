@@ -20,7 +20,7 @@ def findings(saved, kind):
 def weak_grip(tmp_path_factory):
     folder = tmp_path_factory.mktemp("weak") / "r"
     path = ROOT / "scenarios/faults/weak_grip.scenario.yaml"
-    run_case(path, report_dir=folder, stills=False)
+    run_case(path, report_dir=folder, stills=False, page=False)
     return read_run(folder).run
 
 

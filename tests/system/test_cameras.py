@@ -35,7 +35,7 @@ print(json.dumps(to_plain(judge_stored(read_run(folder), folder))))
 @pytest.fixture(scope="module", params=[GRIPPER, MARKERS], ids=["gripper", "markers"])
 def case(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("cameras") / "run"
-    result = run_case(request.param, report_dir=folder, stills=False)
+    result = run_case(request.param, report_dir=folder, stills=False, page=False)
     return result, folder, read_run(folder).run
 
 

@@ -11,7 +11,7 @@ PICK = data_folder("scenarios") / "lessons" / "04_ur_pick_by_friction.scenario.y
 
 @pytest.mark.nightly
 def test_an_object_lifted_off_its_table_is_reported_with_its_distance(tmp_path):
-    run_case(PICK, report_dir=tmp_path / "run", stills=False)
+    run_case(PICK, report_dir=tmp_path / "run", stills=False, page=False)
     run = read_run(tmp_path / "run").run
     lowered = [found for found in run.findings if found.kind == "lowered_margin"]
     reported = {(found.step, *found.values["pair"]): found for found in lowered}

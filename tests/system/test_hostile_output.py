@@ -21,13 +21,9 @@ NAMES = {
     "a terminal": "\x1b[31m\x1b]0;FORGED\x07\x9b31m\u202eFORGED\u2066\x1b[2K\x7f\ufeff\U000e0041",
     "a log": "\n::warning::FORGED\nFORGED ##[error]y ##vso[task.complete]\r::error::F%0A::error::F",
     "a reader": "x\r\nFORGED\x85FORGED\u2028FORGED [[ATTACHMENT|/etc/passwd]]\n\nFORGED\u2029",
+    "all of them": "\x1b[31m\x1b]0;F\x07\x9b31m\u202e\u2066\x7f\ufeff\U000e0041"
+    "\n::error::F\nFORGED##[e]##vso[t]\r::error::F\x85FORGED\u2028FORGED\u2029[[ATTACHMENT|",
 }
-RUNS = {
-    " ".join([f"{name}-run a.scenario.yaml --no-report --in-process", *words])
-    for name in ("a terminal", "a reader")
-    for words in (["--format", "short"], ["--repeat", "2"], ["--json"])
-}
-"""Of the runs in the default run, the name that tries to act on a log is enough."""
 DIRECTIONS = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 
 
@@ -79,6 +75,10 @@ def command(folder, *arguments, commands=0):
     return harmless(out.getvalue(), commands)
 
 
+IN_DEFAULT_RUN = pytest.mark.nightly(but=["all of them"])
+"""The name that tries everything represents the others."""
+
+
 @pytest.fixture(scope="module", params=NAMES.values(), ids=NAMES)
 def hostile(request, tmp_path_factory):
     """A folder with a hostile scenario, and its run."""
@@ -89,49 +89,49 @@ def hostile(request, tmp_path_factory):
     return folder
 
 
-@pytest.mark.nightly(only=RUNS)
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        [*RUN, "--format", "short"],
-        [*RUN, "--repeat", "2"],
-        [*RUN, "--json"],
-        ["check", "a.scenario.yaml"],
-        ["check", "a.scenario.yaml", "--format", "short"],
-        ["check", "a.scenario.yaml", "--json"],
-        ["explain", "a.scenario.yaml"],
-        ["judge", "reports/a"],
-        ["judge", "reports/a", "--contacts"],
-        ["judge", "reports/a", "--json"],
-        ["compare", "reports/a", "reports/a"],
-        ["compare", "reports/a", "reports/a", "--json"],
-        ["view", "reports/a", "--no-open"],
-    ],
-    ids=" ".join,
-)
+COMMANDS = [
+    [*RUN, "--format", "short"],
+    [*RUN, "--repeat", "2"],
+    [*RUN, "--json"],
+    ["check", "a.scenario.yaml"],
+    ["check", "a.scenario.yaml", "--format", "short"],
+    ["check", "a.scenario.yaml", "--json"],
+    ["explain", "a.scenario.yaml"],
+    ["judge", "reports/a"],
+    ["judge", "reports/a", "--contacts"],
+    ["judge", "reports/a", "--json"],
+    ["compare", "reports/a", "reports/a"],
+    ["compare", "reports/a", "reports/a", "--json"],
+    ["view", "reports/a", "--no-open"],
+]
+
+
+@pytest.mark.nightly(but=[f"all of them-{' '.join(words)}" for words in COMMANDS])
+@pytest.mark.parametrize("arguments", COMMANDS, ids=" ".join)
 def test_no_command_prints_what_acts(hostile, arguments):
     command(hostile, *arguments)
 
 
-@pytest.mark.nightly(but=["a log-run", "a log-check"])
+@pytest.mark.nightly(but=["all of them-run", "all of them-check"])
 @pytest.mark.parametrize("verb", ["run", "check"])
 def test_annotations_for_github_are_the_programs_alone(hostile, verb):
     arguments = RUN if verb == "run" else ["check", "a.scenario.yaml"]
     command(hostile, *arguments, "--format", "github", commands=1)
 
 
+@IN_DEFAULT_RUN
 def test_a_recording_of_a_hostile_run_is_graded_harmlessly(hostile):
     command(hostile, "export", "reports/a", "--bag", "recorded", "--force")
     command(hostile, "grade", "a.scenario.yaml", "recorded")
 
 
-@pytest.mark.nightly(but=["a terminal"])
+@IN_DEFAULT_RUN
 def test_a_terminal_gets_only_the_programs_own_sequences(hostile):
     session = run_in_terminal(RUN, hostile)
     harmless(STYLING.sub("", session.text).replace("\r\x1b[2K", ""))
 
 
-@pytest.mark.nightly(but=["a log"])
+@IN_DEFAULT_RUN
 def test_the_files_of_a_suite_hold_nothing_that_acts(hostile, tmp_path, monkeypatch):
     for name in ("b", "c"):
         text = (hostile / "a.scenario.yaml").read_text(encoding="utf-8")

@@ -75,7 +75,7 @@ def test_without_the_boxes_the_path_is_another(flagship, tmp_path):
         text = text.replace(frame, "xyz: [0, 0, 5]")
     path = tmp_path / "without.scenario.yaml"
     path.write_text(text)
-    result = run_case(path, report_dir=tmp_path / "run", stills=False)
+    result = run_case(path, report_dir=tmp_path / "run", stills=False, page=False)
     assert not result.message
     without = read_run(tmp_path / "run").run
 

@@ -14,7 +14,7 @@ MOTIONS = sorted((data_folder("scenarios") / "motions").glob("*.scenario.yaml"))
 @pytest.mark.nightly(but=["02_sequence", "04_path_constraints"])
 @pytest.mark.parametrize("path", MOTIONS, ids=lambda path: path.name.split(".")[0])
 def test_a_motion_scenario_passes(path, tmp_path):
-    result = run_case(path, report_dir=tmp_path / "run", stills=False)
+    result = run_case(path, report_dir=tmp_path / "run", stills=False, page=False)
     reported = [step.message for step in result.steps if step.status == "failed"]
     assert result.outcome == "passed", (reported, result.message)
     record = read_run(tmp_path / "run").run

@@ -231,7 +231,7 @@ def test_doors_and_drawers_move_as_in_mujoco(tmp_path):
         "world: own.xml\nsteps: [{wait: 0.36 s}]\n",
         encoding="utf-8",
     )
-    run_case(tmp_path / "a.scenario.yaml", report_dir=tmp_path / "run", stills=False)
+    run_case(tmp_path / "a.scenario.yaml", report_dir=tmp_path / "run", stills=False, page=False)
     poses = read_run(tmp_path / "run").run.signals.object_poses
     spec = mujoco.MjSpec.from_file(str(tmp_path / "own.xml"))
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -338,7 +338,7 @@ def test_a_scenario_runs_in_a_scene_as_in_its_imported_world(tmp_path, capsys):
     assert main(["check", "--json", str(path)]) == 0
     (file,) = json.loads(capsys.readouterr().out)["files"]
     assert ["smaller friction" in note for note in file["notes"]] == [True]
-    result = run_case(path, report_dir=tmp_path / "report", stills=False)
+    result = run_case(path, report_dir=tmp_path / "report", stills=False, page=False)
     assert result.outcome == "passed", result
     again = run_case(tmp_path / "report" / "scenario.resolved.yaml", stills=False)
     assert again.digest == result.digest

@@ -62,7 +62,7 @@ def cell(tmp_path):
 
 def test_a_cylinder_is_picked_up_in_an_sdf_world_and_the_report_reports_what_is_left_out(cell):
     report = cell.parent / "report"
-    result = run_case(cell, report_dir=report, stills=False)
+    result = run_case(cell, report_dir=report, stills=False, page=False)
     assert result.outcome == "passed", result
     found = [item.message for item in read_run(report).run.findings if item.kind == "note"]
     left_out = f"{cell.parent / 'cell.sdf'}:5: <real_time_factor> of <physics> is left out"
@@ -202,7 +202,7 @@ def test_an_ellipsoid_and_a_cone_come_to_rest_where_their_shapes_say(tmp_path):
     (tmp_path / "round.sdf").write_text(ROUND, encoding="utf-8")
     path = tmp_path / "round.scenario.yaml"
     path.write_text("scenario: x\nrobot: ur3e\nworld: round.sdf\nsteps: [settle: {}]\n")
-    result = run_case(path, report_dir=tmp_path / "report", stills=False)
+    result = run_case(path, report_dir=tmp_path / "report", stills=False, page=False)
     assert result.outcome == "passed"
     poses = read_run(tmp_path / "report").run.signals.object_poses
     heights = [float(poses[name][-1, 2]) for name in ("egg", "hat")]

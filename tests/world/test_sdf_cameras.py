@@ -36,7 +36,7 @@ def test_a_camera_of_the_world_is_captured_and_sees_the_ball(tmp_path):
         "world: watched.sdf\nsteps:\n  - capture: watcher\n"
         "expect:\n  - sees: {camera: watcher, object: ball}\n"
     )
-    result = run_case(path, report_dir=tmp_path / "report", stills=False)
+    result = run_case(path, report_dir=tmp_path / "report", stills=False, page=False)
     assert result.outcome == "passed", result
     [file] = (tmp_path / "report/cameras/watcher").glob("*.color.png")
     picture = cv2.imread(str(file)).astype(int)
