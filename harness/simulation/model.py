@@ -22,7 +22,7 @@ from harness.simulation.geoms import (
     roughness,
     set_smaller_frictions,
 )
-from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
+from harness.simulation.robot_mjcf import add_robot, link_friction
 from harness.simulation.servo import Servos, add_servos, design_servos
 from harness.simulation.step_state import allow_sleep
 from harness.simulation.world_mjcf import add_object, parking_pose
@@ -70,7 +70,6 @@ class PhysicsModel:
         qpos: The position index of each movable joint, in description order.
         dof: The velocity index of each movable joint, in description order.
         actuated: The indices of the actuated joints in description order.
-        ranges: The simulated limits of the movable joints, shape (n, 2).
         objects: Simulated objects by name, in order.
         frames: The recorded links; the sensors hold 7 numbers for each, after the TCP's 7.
     """
@@ -81,7 +80,6 @@ class PhysicsModel:
     qpos: IntArray
     dof: IntArray
     actuated: IntArray
-    ranges: FloatArray
     objects: Mapping[str, ObjectPlace]
     frames: tuple[str, ...]
     body_names: tuple[str, ...]
@@ -251,7 +249,6 @@ def _places(
             [i for i, joint in enumerate(description.movable_joints) if joint.mimic is None],
             dtype=np.int64,
         ),
-        np.array([joint_range(description, joint) for joint in description.movable_joints]),
         objects,
         frames,
         names,

@@ -8,6 +8,7 @@ import pytest
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot, robot_names
 from harness.simulation.model import build_model
+from harness.simulation.robot_mjcf import joint_range
 
 ROBOTS = [{"model": name} for name in robot_names()] + [
     {"model": "ur3e", "gripper": "rh_p12_rn_a", "base": {"xyz": [0.1, -0.2, 1.02]}},
@@ -25,8 +26,9 @@ def test_both_libraries_agree_on_kinematics_and_masses(options):
     pin_model = pin.buildModelFromXML(description.urdf)
     pin_data = pin_model.createData()
     rng = np.random.default_rng(7)
-    lower = np.maximum(physics.ranges[:, 0], -np.pi)
-    upper = np.minimum(physics.ranges[:, 1], np.pi)
+    ranges = np.array([joint_range(description, joint) for joint in description.movable_joints])
+    lower = np.maximum(ranges[:, 0], -np.pi)
+    upper = np.minimum(ranges[:, 1], np.pi)
     for _ in range(20):
         positions = description.with_mimics(rng.uniform(lower, upper))
         data.qpos[physics.qpos] = positions
