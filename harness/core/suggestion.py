@@ -18,6 +18,8 @@ SYNONYMS = {
     "length": ("height",),
     "above": ("height", "by_at_least", "min_height"),
     "object": ("target", "item", "body", "obj"),
+    "max_rotation": ("max_angle", "max_turn"),
+    "max_velocity": ("max_speed", "speed"),
     "at_most": ("max", "maximum", "below"),
     "at_least": ("min", "minimum"),
     "scenario": ("name", "title"),

@@ -108,9 +108,6 @@ def find_work(place: Path, exercise: Exercise | None) -> tuple[Exercise, Path]:
 def run_work(exercise: Exercise, file: Path, report: Path) -> CaseResult:
     """Run a student's steps, or node, with the world and the expectations of the exercise.
 
-    Args:
-        report: The folder of the report.
-
     Raises:
         SpecError: The student's file is no scenario, or changes the scene.
     """
@@ -130,9 +127,6 @@ def run_work(exercise: Exercise, file: Path, report: Path) -> CaseResult:
 
 def test_solver(exercise: Exercise, file: Path, report: Path) -> tuple[tuple[Verdict, ...], Credit]:
     """Test a student's function, and print what was found.
-
-    Args:
-        report: The folder of the report.
 
     Returns:
         The properties as verdicts with their points, and what those that hold earn.

@@ -82,6 +82,26 @@ def test_a_joint_that_jumps_once_is_doubted(at, tmp_path):
     assert outcomes(grade(jumps, tmp_path, IN_RANGE, allowed=["jumps"])) == ["passed"]
 
 
+@pytest.mark.parametrize(
+    "position",
+    [
+        lambda t: np.degrees(ramp(0.6)(t)),
+        lambda t: -40.0,
+        lambda t: 20.0 + 10 * np.sin(6 * t),
+    ],
+    ids=["a motion", "at rest", "there and back"],
+)
+def test_a_joint_whose_positions_are_in_degrees_is_said_to_be(position, tmp_path):
+    found = grade(recorded(position=position), tmp_path, IN_RANGE, STANDS)
+    assert outcomes(found) == ["jumps", "jumps"]
+    assert "these look like degrees, and JointState has radians" in found.notes[0]
+
+
+def test_a_joint_that_is_a_turn_off_is_not_in_degrees(tmp_path):
+    found = grade(recorded(position=lambda t: 2 * np.pi + 0.1), tmp_path, IN_RANGE, STANDS)
+    assert "degrees" not in "".join(found.notes)
+
+
 def test_a_motion_at_the_limit_in_messages_that_come_late_is_no_jump(tmp_path):
     """4.8 rad/s, and three messages of 60 ms arrive with nearly the same stamp."""
     fast = recorded(position=ramp(4.8, 1.0, 1.15))

@@ -64,8 +64,12 @@ class Doubt:
 
 
 def joint_doubts(messages: Mapping[str, JointMessages]) -> Iterator[Doubt]:
-    """Joints whose messages jump: there and back, as those of two publishers do, or once."""
+    """Joints whose messages jump, there and back or once, or which are in degrees."""
     for name, recorded in messages.items():
+        if _is_in_degrees(recorded):
+            most = f"{name} reaches {np.nanmax(np.abs(recorded.values[:, 0])):.0f} rad"
+            yield Doubt("jumps", f"{most}: these look like degrees, and JointState has radians")
+            continue
         joint, spans = recorded.joint, np.diff(recorded.times)
         fastest = FASTEST * (joint.velocity if 0 < joint.velocity < np.inf else UNKNOWN_LIMIT)
         sizes, slack = np.abs(recorded.steps), SLACK[joint.kind]
@@ -83,6 +87,17 @@ def joint_doubts(messages: Mapping[str, JointMessages]) -> Iterator[Doubt]:
             yield Doubt(
                 "jumps", f"{name} jumps {when}, faster than {FASTEST:g} times its limit: {why}"
             )
+
+
+def _is_in_degrees(recorded: JointMessages) -> bool:
+    """Whether positions are more than a turn beyond the joint's limits, and as degrees are not."""
+    joint, values = recorded.joint, recorded.values[~np.isnan(recorded.values[:, 0]), 0]
+
+    def beyond(values: FloatArray) -> float:
+        return np.maximum(joint.lower - values, values - joint.upper).max(initial=-np.inf)
+
+    is_turn = joint.kind != "prismatic"
+    return is_turn and beyond(values) > 2 * np.pi and beyond(np.radians(values)) <= 0
 
 
 @dataclass(frozen=True, eq=False)
