@@ -52,6 +52,25 @@ def test_a_scenario_that_expects_something_has_no_such_note(tmp_path, text):
     assert not any("expects nothing" in note for note in result.case.notes)
 
 
+@pytest.mark.parametrize(
+    ("expected", "said"),
+    [
+        ("path_length: {at_most: 1000 m}", "`at_most` is 1000 m"),
+        ("duration: 100000 s", "`at_most` is 100000 s"),
+        ("{eventually: {gripper: open}, within: 3000 s}", "`within` is 3000 s"),
+        ("never: {in_contact: {between: [robot, any], min_force: 1e6}}", "`min_force` is 1e+06 N"),
+        ("path_length: {at_most: 20 m}", ""),
+        ("duration: 600 s", ""),
+    ],
+)
+def test_a_limit_that_no_run_reaches_is_noted(tmp_path, capsys, expected, said):
+    path = written(tmp_path, f"  - wait: 0.05 s\nexpect:\n  - {expected}\n")
+    assert main(["check", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert ("more than any run reaches" in printed) == bool(said), printed
+    assert not said or f"note: line 6: {said}, more than any run reaches" in printed
+
+
 def test_an_angle_that_looks_like_degrees_is_noted_with_its_place(tmp_path, capsys):
     text = "  - wait: 0.05 s\nobjects:\n  - {name: a, box: {size: [0.1, 0.1, 0.1]}, static: true,"
     text += " pose: {xyz: [0.5, 0, 0.5], rpy: [0, 0, 90]}}\nexpect: [within_limits]\n"

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from pydantic import BaseModel
 
 from harness.cell.program import Program
 from harness.core.errors import Problem
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere, bounding_radius
+from harness.core.limits import LONGEST_RUN
 from harness.core.solids import volume_of
 from harness.core.world import WorldObject
+from harness.language.annotations import unit_of
 from harness.ports.scene import Touch
 from harness.recording.explanation import LoweredMargins
 from harness.recording.run import Finding, Run
 from harness.recording.step_record import StepRecord
 
 LARGE = 5.0  # size from which a movable object is probably given in millimetres [m]
+REACHED = {"s": LONGEST_RUN, "m": LONGEST_RUN, "m/s": 100.0, "N": 1e5, "N*m": 1e5}
+"""More than any run reaches, by unit: distance is that of the longest run at 1 m/s."""
 DENSEST = 22590.0  # osmium at room temperature, CRC Handbook of Chemistry and Physics [kg/m^3]
 
 NOTHING_EXPECTED = (
@@ -31,10 +36,21 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_large(obj))]
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_inert(obj))]
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_dense(obj))]
+    for item in program.expectations:
+        found += [Finding("note", text) for text in _unreachable(item.spec, item.line)]
     expects_errors = any(step.spec.expect_error for step in program.all_steps())
     if not program.expectations and not expects_errors:
         found.append(Finding("nothing_expected", NOTHING_EXPECTED))
     return tuple(found)
+
+
+def _unreachable(spec: BaseModel, line: int) -> Iterator[str]:
+    """Remarks on numbers of an expectation that no run reaches: as limits they limit nothing."""
+    for key, value in spec:
+        if isinstance(value, BaseModel):
+            yield from _unreachable(value, line)
+        elif isinstance(value, float) and value > REACHED.get(unit := unit_of(spec, key), np.inf):
+            yield f"line {line}: `{key}` is {value:g} {unit}, more than any run reaches"
 
 
 def _too_large(obj: WorldObject) -> str:
@@ -92,11 +108,7 @@ def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
 
 
 def slowed_videos(run: Run, rates: Mapping[str, float]) -> tuple[Finding, ...]:
-    """The cameras whose video has a lower rate than requested, since the run is long.
-
-    Args:
-        rates: Requested frames per second of simulated time, by camera.
-    """
+    """The cameras whose video has a lower rate than requested, since the run is long."""
     most = {camera.name: camera.most_frames for camera in run.cameras}
     return tuple(
         Finding(

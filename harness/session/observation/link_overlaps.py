@@ -66,12 +66,7 @@ def _arms_of(pair: Pair, description: RobotDescription) -> Pair | None:
 
 
 def _with_distances(signals: Signals, key: Pair, nearest: FloatArray, link: int) -> Signals:
-    """The signals with distances of the robot, or an arm, where they are the smallest.
-
-    Args:
-        key: The names of both bodies.
-        nearest: The distances [m], inf where they are not known, shape (N,).
-    """
+    """The signals with distances of the robot, or an arm, where they are smallest; inf: unknown."""
     known = signals.clearances.get(key, np.full(len(nearest), signals.clearance_cutoff))
     of_link = signals.clearance_links.get(key, np.full(len(nearest), -1))
     is_nearer = nearest < known

@@ -6,11 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from harness.cell.program import Program
+from harness.cell.program import Program, ProgramExpectation
 from harness.cell.scene_state import Belief
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.judging.expectations.duration import DurationCheck
 from harness.ports.scene import Touch
 from harness.session.observation.beliefs import believed_poses
 from harness.session.observation.findings import about_file, findings_of, overlap_findings
@@ -129,12 +130,15 @@ def test_an_object_as_large_as_a_house_was_probably_given_in_millimetres(geometr
     assert all(said in each.message for each in found)
 
 
+SOMETHING = ProgramExpectation(DurationCheck(at_most=600.0), "", 7)
+
+
 def thing(*shapes, is_static=False, moment=0.0, mass=1.0, center=(0, 0, 0)):
     inertia = np.diag([moment / 2, moment, moment])
     return WorldObject("thing", shapes, SE3.identity(), is_static, mass, np.array(center), inertia)
 
 
-def program_with(world=(), later=None, steps=(), expectations=("something",)):
+def program_with(world=(), later=None, steps=(), expectations=(SOMETHING,)):
     """A program of objects, steps and expectations."""
     program = SimpleNamespace(
         world=SimpleNamespace(objects=world),
@@ -176,7 +180,12 @@ def test_no_mass_within_its_shapes_turns_more_heavily_than_at_their_far_end(obj,
 
 @pytest.mark.parametrize(
     ("expectations", "error", "is_note"),
-    [((), None, True), ((), "PLANNING_FAILED", False), ((1,), None, False), ((1,), "X", False)],
+    [
+        ((), None, True),
+        ((), "PLANNING_FAILED", False),
+        ((SOMETHING,), None, False),
+        ((SOMETHING,), "X", False),
+    ],
 )
 def test_a_file_that_expects_nothing_differs_from_one_that_expects_a_failure(
     expectations, error, is_note

@@ -27,17 +27,15 @@ def range_of_signal(signal: Signal) -> Range:
 
 
 def range_of(node: Number, of_signal: RangeOf = range_of_signal) -> Range:
-    """The least and the largest value of a number, by interval arithmetic.
-
-    Args:
-        node: The number of a formula, with its operands.
-        of_signal: The range of a signal, where more is known of it than of any run.
-    """
+    """The least and the largest value of a number, by interval arithmetic of its signals."""
     match node:
         case Const(value=value):
             return value, value
         case Signal():
             return of_signal(node)
+        case Arithmetic(operator="*", operands=(first, second)) if _key(first) == _key(second):
+            size = _calculated("abs", [range_of(first, of_signal)])
+            return _calculated("*", [size, size])
         case Arithmetic(operator=operator, operands=operands):
             return _calculated(operator, [range_of(each, of_signal) for each in operands])
 
