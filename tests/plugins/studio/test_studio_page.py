@@ -331,6 +331,16 @@ CUT = """
   e.checkVisibility() && e.clientWidth && e.scrollWidth > e.clientWidth + 1).map((e) => e.outerHTML)
 """
 
+NUMBERS_CUT = """
+[...document.querySelectorAll('#pose .axis')].filter((axis, index) => {
+  const input = axis.querySelector('input'), before = input.value;
+  input.value = index < 3 ? '-1234.5' : '-179.9';
+  const isCut = input.scrollWidth > input.clientWidth;
+  input.value = before;
+  return isCut;
+}).map((axis) => axis.textContent)
+"""
+
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
 def test_plan_and_execute_stay_on_the_screen_and_no_name_is_cut(opened, size):
@@ -341,6 +351,9 @@ def test_plan_and_execute_stay_on_the_screen_and_no_name_is_cut(opened, size):
         page.click(f"#show-{tab}")
         assert page.evaluate(IS_SEEN), tab
         assert page.evaluate(CUT) == []
+    assert page.evaluate(NUMBERS_CUT) == []
+    inner = "document.querySelector('{}').getBoundingClientRect().right".format
+    assert page.evaluate(inner("#frame")) <= page.evaluate(inner("#tab-arm"))
     page.set_viewport_size({"width": 1400, "height": 900})
 
 
