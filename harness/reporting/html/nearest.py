@@ -10,6 +10,7 @@ from harness.core.types import FloatArray
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Run
 from harness.recording.verdict import Measure, Verdict
+from harness.reporting.html.first_view import rounded
 
 PROJECTIONS = 400  # back and forth between two shapes; flat sides meet after a few
 WRONG = 1e-3  # [m]: points that are farther off the recorded distance are not shown
@@ -34,7 +35,7 @@ def nearest_points(run: Run, verdict: Verdict) -> dict[str, list[float]] | None:
     one, two = min(found, key=lambda points: float(np.linalg.norm(points[1] - points[0])))
     if not _is_recorded(float(np.linalg.norm(two - one)), measure, run):
         return None
-    return {"expected": _rounded(one), "actual": _rounded(two)}
+    return {"expected": rounded(one), "actual": rounded(two)}
 
 
 def _is_recorded(distance: float, measure: Measure, run: Run) -> bool:
@@ -113,7 +114,3 @@ def _projected(point: FloatArray, shape: Shape, T_world_shape: FloatArray) -> Fl
 def _shortened(vector: FloatArray, most: float) -> FloatArray:
     length = float(np.linalg.norm(vector))
     return vector if length <= most else vector * (most / length)
-
-
-def _rounded(point: FloatArray) -> list[float]:
-    return [round(float(value), 6) for value in point]

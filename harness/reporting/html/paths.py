@@ -13,6 +13,7 @@ from harness.recording.link_poses import planned_tcp_poses, replayed_link_poses
 from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
+from harness.reporting.html.first_view import rounded
 from harness.reporting.html.packing import Packer
 
 TCP_POINTS = 1500  # of a drawn path: as many as a page has pixels across
@@ -33,7 +34,7 @@ def pack_plan(run: Run, step: StepRecord, index: int, packer: Packer) -> dict[st
     nearest = _nearest(run, step)
     goal = None if nearest is None else nearest["target"]
     if goal is None and poses is not None:
-        goal = [round(float(value), 6) for value in poses[-1]]
+        goal = rounded(poses[-1])
     return {
         "plan": None if poses is None else packer.add(f"plan.{index}", _points(poses)),
         "rawPlan": None if found is None else packer.add(f"raw.{index}", _points(found)),
@@ -76,7 +77,7 @@ def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
     poses = replayed_link_poses(run.robot, row, [*run.robot.link_visuals, run.robot.tcp_link])
     return {
         "shows": nearest.shows,
-        "bodies": {name: [round(float(x), 6) for x in pose[0]] for name, pose in poses.items()},
+        "bodies": {name: rounded(pose[0]) for name, pose in poses.items()},
         "place": _numbers(nearest.pose, 7),
         "target": _target(nearest.target),
     }
@@ -99,7 +100,7 @@ def _numbers(values: Floats | None, count: int) -> list[float] | None:
     if values is None or len(values) != count:
         return None
     array = np.array(values)
-    return [round(float(value), 6) for value in array] if np.isfinite(array).all() else None
+    return rounded(array) if np.isfinite(array).all() else None
 
 
 def _spread(count: int, most: int) -> np.ndarray[Any, Any]:
