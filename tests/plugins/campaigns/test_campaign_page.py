@@ -331,6 +331,14 @@ def test_margins_that_hardly_differ_are_explained_by_nothing(step):
     assert found.conclusion.startswith("The worst margins hardly differ: 16.7% to ")
 
 
+@pytest.mark.parametrize(("step", "shown"), [(1e-6, 0), (1e-3, 1)])
+def test_a_page_says_that_parameters_were_tested_only_where_they_were(tmp_path, step, shown):
+    cases = [SuiteCase(passed(i, 0.06 + step * i), {"x": i}) for i in range(20)]
+    text = write_suite_page(tmp_path, SuiteRecord("passed", cases)).read_text()
+    assert text.count("tested by permutation") == shown
+    assert text.count('<svg class="curve"') == shown
+
+
 def test_margins_that_are_smallest_in_the_middle_or_with_a_word_are_said_in_a_sentence():
     middle = [SuiteCase(passed(i, 0.06 + 0.001 * abs(i - 20)), {"x": i}) for i in range(41)]
     [found] = sensitivities(Columns(middle))
