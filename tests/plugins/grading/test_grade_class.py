@@ -135,6 +135,8 @@ def test_no_cell_of_a_table_covers_another_one(graded, browser, width):
         for name in ("index.html", "students/low/index.html", "students/perfect/index.html"):
             opened.goto((graded / name).as_uri())
             assert opened.evaluate(covering) == [], name
+            heads = opened.locator("thead th")
+            assert all(each.is_visible() == (width == 1440) for each in heads.all()), name
             assert opened.evaluate("document.documentElement.scrollWidth") == width
         opened.goto((graded / "index.html").as_uri())
         heights = opened.eval_on_selector_all(
