@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+from functools import cache
 
 import pytest
 
@@ -150,17 +151,25 @@ def test_every_description_in_the_schema_stands_alone(text):
     assert not found, "\n".join(found)
 
 
+@cache
+def documented():
+    """Every module, class and function of the package, with its file."""
+    return [
+        (path.relative_to(ROOT).as_posix(), node)
+        for path in sorted((ROOT / "harness").rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+    ]
+
+
 def test_every_argument_attribute_and_result_is_described():
     found, count = [], 0
-    for name, text in texts():
-        if not name.startswith("harness/") or not name.endswith(".py"):
-            continue
-        for node in ast.walk(ast.parse(text)):
-            if isinstance(node, ast.FunctionDef | ast.ClassDef):
-                for line, entry in described(node):
-                    count += 1
-                    if reason := flaw(entry):
-                        found.append(f"{name}:{line}: '{entry}': {reason}")
+    for name, node in documented():
+        if not isinstance(node, ast.Module):
+            for line, entry in described(node):
+                count += 1
+                if reason := flaw(entry):
+                    found.append(f"{name}:{line}: '{entry}': {reason}")
     assert not found, "\n".join(found)
     assert count > 1500
 
@@ -168,10 +177,7 @@ def test_every_argument_attribute_and_result_is_described():
 def test_every_docstring_names_its_subject():
     found = [
         f"{name}: '{text}'"
-        for name, content in texts()
-        if name.startswith("harness/") and name.endswith(".py")
-        for node in ast.walk(ast.parse(content))
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+        for name, node in documented()
         if NO_SUBJECT.match(text := (ast.get_docstring(node) or "").partition("\n")[0])
     ]
     assert not found, "\n".join(found)

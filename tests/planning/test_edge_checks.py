@@ -96,7 +96,6 @@ ROBOTS = {
 @pytest.mark.nightly(
     but=[
         "0.01-0.025-ur5e with a hull",
-        "0.0-0.004-ur3e",
         "0.0-0.025-open_manipulator_x",
         "0.01-0.025-open_manipulator_x",
         "0.0-0.004-open_manipulator_x",
