@@ -86,7 +86,7 @@ def test_a_joint_that_jumps_once_is_doubted(at, tmp_path):
     "position",
     [
         lambda t: np.degrees(ramp(0.6)(t)),
-        lambda t: -40.0,
+        lambda _: -40.0,
         lambda t: 20.0 + 10 * np.sin(6 * t),
     ],
     ids=["a motion", "at rest", "there and back"],
@@ -98,7 +98,7 @@ def test_a_joint_whose_positions_are_in_degrees_is_said_to_be(position, tmp_path
 
 
 def test_a_joint_that_is_a_turn_off_is_not_in_degrees(tmp_path):
-    found = grade(recorded(position=lambda t: 2 * np.pi + 0.1), tmp_path, IN_RANGE, STANDS)
+    found = grade(recorded(position=lambda _: 2 * np.pi + 0.1), tmp_path, IN_RANGE, STANDS)
     assert "degrees" not in "".join(found.notes)
 
 
