@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from random import Random
+from tempfile import mkdtemp
 
 from harness.core.errors import HarnessError, SpecError
 from tests.campaigns import mutation
@@ -70,9 +71,8 @@ class Execution:
 
     def __init__(self, reader: Reader, folder: Path, outcome: Outcome) -> None:
         self._reader, self._folder, self.outcome = reader, folder, outcome
-        self._place = folder / "changed"
-        self._place.mkdir(exist_ok=True)
-        corpus = list(reader.corpus(folder))
+        self._place = Path(mkdtemp(prefix="changed-", dir=folder))
+        corpus = list(reader.corpus(Path(mkdtemp(prefix="good-", dir=folder))))
         self._read = reader.begin(self._place)
         self.corpus = [data for data in corpus if is_good(self._read, self._place, data)]
         assert self.corpus, "no file is read as it is"
