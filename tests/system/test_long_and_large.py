@@ -19,7 +19,7 @@ from tests.running import run_case
 from tests.suite.ball import ball
 
 HOUR = 3600.0  # [s]
-PAGE_OF_A_CASE = 8e3  # memory that the suite's page takes for each row while it is written [bytes]
+PAGE_OF_A_CASE = 4e3  # memory that the suite's page takes for each row while it is written [bytes]
 
 
 class Watched:
