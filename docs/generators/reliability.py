@@ -248,7 +248,8 @@ def _promise(promise: str, tests: tuple[str, ...], last: dict[str, dict[str, Any
     said = ", ".join(f"{ends[end]:,} {end}" for end in ENDS if ends[end]) or "none"
     known = [last[each] for each in tests if each in last]
     day = f" on {min(each['date'] for each in known)}" if known else ""
-    whole = ", with exhaustive ones" if any(each.get("exhaustive") for each in known) else ""
+    names = [each.rpartition("/")[2] for each in tests if last.get(each, {}).get("exhaustive")]
+    whole = f"; exhaustive ones of {', '.join(names)}" if names else ""
     return f"| {promise} | {places} | {said}{day}{whole} |"
 
 
