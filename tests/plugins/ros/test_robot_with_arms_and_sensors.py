@@ -21,10 +21,10 @@ from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wrench_readings import WrenchReadings
 from harness.recording.read_run import read_run
 from harness.session.prepare import prepare
+from tests.commands import harness
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.test_robot_of_ros2 import HOLD, remote
 from tests.plugins.ros.test_several_arms import arm_joints, cell
-from tests.running import exit_code
 
 STATE = "sensor_msgs/msg/JointState"
 SENSOR = "{model: open_manipulator_x, wrench_sensors: {wrist: {link: link5}}}"
@@ -192,12 +192,13 @@ class Applaud(Step):
 """
 
 
-def test_a_step_of_a_package_says_itself_that_no_robot_can_do_it(tmp_path, capsys):
+def test_a_step_of_a_package_says_itself_that_no_robot_can_do_it(tmp_path):
     (tmp_path / "applause.py").write_text(APPLAUD, encoding="utf-8")
     plan = scenario(tmp_path, "- applaud: {}", BELT)
-    options = ["--robot", "ros2", "--yes", "--no-report", "--plugin", str(tmp_path / "applause.py")]
-    assert exit_code("run", plan, *options) == 2
-    said = " ".join("".join(capsys.readouterr()).replace("|", " ").split())
+    options = ["--robot", "ros2", "--yes", "--no-report", "--plugin", "applause.py"]
+    done = harness("run", plan, *options, cwd=tmp_path)  # the step stays in that process
+    assert done.returncode == 2
+    said = " ".join((done.stdout + done.stderr).replace("|", " ").split())
     assert "`applaud` is not possible on a ROS 2 robot: its hands are full" in said
     assert "applaud yourself; without `--robot ros2` the step is simulated" in said
 
