@@ -169,12 +169,9 @@ def _fitted_offset(
     for _ in range(MOST_STEPS):
         samples = answers + offset
         reached = [chain.link_pose(each) for each in samples]
-        errors = np.array(
-            [
-                task_error(task, target, _shifted(pose, base, tool), reach)
-                for target, pose in zip(targets, reached, strict=True)
-            ]
-        )
+        shifted = [SE3(p.rotation, p.translation + base + p.rotation @ tool) for p in reached]
+        pairs = zip(targets, shifted, strict=True)
+        errors = np.array([task_error(task, *pair, reach) for pair in pairs])
         best = np.argsort(np.abs(errors).max(axis=1), kind="stable")[:count]
         columns = task_jacobians(chain, task, samples[best])
         if is_shifted:
@@ -192,7 +189,3 @@ def _fitted_offset(
         if size < CONVERGED:
             return offset if np.abs(errors[best]).max() < NEARLY_RIGHT else None
     return None
-
-
-def _shifted(pose: SE3, base: FloatArray, tool: FloatArray) -> SE3:
-    return SE3(pose.rotation, pose.translation + base + pose.rotation @ tool)

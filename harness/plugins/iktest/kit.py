@@ -220,8 +220,7 @@ class _Search:
         trial.offset = learned.offset
         pairs = self._answers(targets)
         flaws = [trial.misses(*pair) for pair in pairs]
-        common = trial.offset.text() if trial.offset else ""
-        is_other = np.array([flaw is not None and flaw.kind != common for flaw in flaws], bool)
+        is_other = np.array([flaw and flaw.kind != trial.common_flaw for flaw in flaws], bool)
         trial.regions = separate_regions(trial.chain, pairs, is_other)
 
     def _learned(
@@ -306,7 +305,7 @@ class _Search:
 
         count = max(10, round(each.share * self._test.examples))
         draw(each.cases(trial), visit, count, self._test.seed)
-        common = [trial.other_convention, trial.offset.text() if trial.offset else ""]
+        common = [trial.other_convention, trial.common_flaw]
         frequent = sorted(kinds, key=lambda kind: (kind not in common, -kinds[kind], kind))
         new = [kind for kind in frequent if kind not in self._known][:MOST_FINDINGS]
         for kind in new:

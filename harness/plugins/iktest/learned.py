@@ -70,5 +70,5 @@ class Learned:
         which = (
             "every answer is" if count == self.answers else f"{count} of {self.answers} answers are"
         )
-        but = ", but for an error that is the same at every target," if self.shifted else ""
-        return f"counts otherwise: {which} right{but} when {self.convention.text(chain)}"
+        but = f", but {self.offset.text()}" if self.offset else ""
+        return f"counts otherwise: {which} right when {self.convention.text(chain)}{but}"

@@ -38,7 +38,7 @@ class Offset:
         return bool(np.abs(_error(self.frame, task, target, reached) - self.error).max() < SAME)
 
     def text(self) -> str:
-        """The kind of flaw that this is."""
+        """The error in words."""
         millimetres = numbers_text(1000 * self.error[:3], 1)
         parts = [f"off by ({millimetres}) mm"]
         angle = float(np.linalg.norm(self.error[3:]))
@@ -51,7 +51,7 @@ class Offset:
             parts = [*(parts if np.linalg.norm(self.error[:3]) > SAME else []), turn]
         where = "the world's axes" if self.frame == "world" else "the link's own axes"
         targets = "every target" if self.is_everywhere else "many targets"
-        return f"is {' and '.join(parts)} in {where}, at {targets}"
+        return f"{' and '.join(parts)} in {where}, at {targets}"
 
 
 def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | None:

@@ -84,10 +84,9 @@ def _around(trial: SolverTrial) -> st.SearchStrategy[Target]:
 
 def _reaches(trial: SolverTrial, target: Target) -> list[Flaw]:
     answers = trial.query(target).answers
-    found = [flaw for answer in answers if (flaw := trial.misses(target, answer)) is not None]
-    if trial.other_convention and answers:
-        found.append(trial.counted_otherwise(target, answers[0]))
-    return found
+    first = answers[:1] if trial.other_convention else ()
+    found = [trial.counted_otherwise(target, answer) for answer in first]
+    return found + [flaw for answer in answers if (flaw := trial.misses(target, answer))]
 
 
 def _answers(trial: SolverTrial, target: Target) -> list[Flaw]:
@@ -113,7 +112,7 @@ def _refuses(trial: SolverTrial, target: Target) -> list[Flaw]:
     wrong = next((each for each in found if each is not None), None)
     if wrong is None:
         return []
-    if trial.offset is not None and wrong.kind == trial.offset.text():
+    if wrong.kind == trial.common_flaw:
         return [wrong]
     return [trial.flaw("answers a target out of reach", wrong.detail, target, wrong.answer)]
 

@@ -76,6 +76,14 @@ class SolverTrial:
     def __post_init__(self) -> None:
         self.convention = Convention.plain(self.chain.dof)
 
+    @property
+    def common_flaw(self) -> str:
+        """The flaw that the offset is, in words: one with the convention, if at every target."""
+        if self.offset is None:
+            return ""
+        is_one = self.other_convention and self.offset.is_everywhere
+        return self.other_convention if is_one else f"is {self.offset.text()}"
+
     def query(
         self, target: Target, seed: FloatArray | None = None, *, afresh: bool = False
     ) -> CallOutcome:
@@ -131,7 +139,7 @@ class SolverTrial:
             return None
         what = "orientation" if self.task == "pose" else "pitch"
         if self.offset is not None and self.offset.explains(self.task, target.pose, reached):
-            kind = self.offset.text()
+            kind = self.common_flaw
         else:
             here = coordinates(self.chain, target, answer)
             regions = (f" {each.text()}" for each in self.regions if each.contains(here))
@@ -173,10 +181,8 @@ class SolverTrial:
                 return self.flaw(f"raises {name}{at}", outcome.text, target)
             case "unreadable":
                 return self.flaw("answers with what is no joint positions", outcome.text, target)
-            case "hung":
-                return self.flaw(HANGS, outcome.text, target)
-            case "died":
-                return self.flaw(DIES, outcome.text, target)
+            case "hung" | "died":
+                return self.flaw(HANGS if outcome.kind == "hung" else DIES, outcome.text, target)
             case _:
                 for answer in outcome.answers:
                     if not np.all(np.isfinite(answer)):

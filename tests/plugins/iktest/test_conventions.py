@@ -1,13 +1,13 @@
 """Units, zeros and directions of joints are one mistake, by which the rest is judged."""
 
-from math import degrees, pi
+from math import cos, degrees, pi, sin
 
 import numpy as np
 import pytest
 
 from harness.plugins.iktest import IkTest, run_ik_test
 from harness.robot.robot_source import RobotSource
-from tests.plugins.iktest.arms import OM, correct
+from tests.plugins.iktest.arms import OM, correct, ur3e
 from tests.plugins.iktest.test_joint_limits import spherical
 from tests.robot.arm_files import write_arm
 
@@ -121,6 +121,25 @@ def test_two_conventions_at_once_are_one_finding(ik, words):
     assert finding.kind == f"counts otherwise: every answer is right when {words}"
 
 
+LOWER = "off by (0.0, 0.0, -17.0) mm in the world's axes"
+
+
+def on_base(base, change):
+    """A UR3e's solver that takes its base for standing elsewhere, its answers changed."""
+
+    def ik(matrix):
+        return [change(*answer) for answer in ur3e(np.linalg.inv(base) @ matrix)]
+
+    return ik
+
+
+def standing(z, tilt=0.0):
+    """A base at a height [m], tilted about x [rad]."""
+    base = np.eye(4)
+    base[1:3, 1:] = [[cos(tilt), -sin(tilt), 0.0], [sin(tilt), cos(tilt), z]]
+    return base
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("change", "words"),
@@ -130,31 +149,88 @@ def test_two_conventions_at_once_are_one_finding(ik, words):
         (in_degrees, "it is taken in degrees"),
     ],
 )
-def test_a_convention_and_a_shifted_base_are_two_findings(change, words):
-    findings = run_ik_test(IkTest(both(lower_base, change), OM, examples=40)).findings
-    assert [each.kind for each in findings] == [
-        "counts otherwise: every answer is right, but for an error that is the same at every "
-        f"target, when {words}",
-        "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target",
-    ]
+def test_a_convention_and_a_shifted_base_are_one_finding(change, words):
+    [finding] = run_ik_test(IkTest(both(lower_base, change), OM, examples=40)).findings
+    assert finding.kind == (
+        f"counts otherwise: every answer is right when {words}, but {LOWER}, at every target"
+    )
+    assert finding.shown == finding.tried
+    first = lower_base(*finding.target.pose.translation, 0.0)[0]
+    assert finding.answer == pytest.approx(change(*first))
 
 
 @pytest.mark.nightly
-def test_what_is_wrong_besides_is_found_too():
-    ik = answers(in_degrees)
+@pytest.mark.parametrize(
+    ("base", "change", "words"),
+    [
+        (
+            standing(0.017),
+            lambda a, b, c, *rest: [a, b, -c, *rest],
+            f"elbow_joint counts in the other direction, but {LOWER}",
+        ),
+        (
+            standing(0.017),
+            lambda a, b, *rest: [a, b + 0.17, *rest],
+            f"shoulder_lift_joint is 0.17 rad less, but {LOWER}",
+        ),
+        (
+            standing(0.0, 0.1),
+            in_degrees,
+            "it is taken in degrees, but turned by 5.7 deg about (-1.00, 0.00, 0.00) in the"
+            " world's axes",
+        ),
+    ],
+)
+def test_so_they_are_of_an_arm_that_takes_poses(base, change, words):
+    findings = run_ik_test(IkTest(on_base(base, change), "ur3e", examples=20)).findings
+    [kind] = [each.kind for each in findings if each.property == "reaches"]
+    assert kind == f"counts otherwise: every answer is right when {words}, at every target"
+    assert not any("off by" in each.kind or "misses" in each.kind for each in findings[1:])
 
-    def shifted(x, y, z, pitch):
-        return ik(x, y, z - 0.017, pitch)
 
-    def refuses(x, y, z, pitch):
-        return ik(x, y, z, pitch) if y < 0.1 else None
+IN_DEGREES = "counts otherwise: every answer is right when it is taken in degrees"
 
-    kinds = [each.kind for each in run_ik_test(IkTest(shifted, OM, examples=40)).findings]
-    assert "but for an error that is the same at every target, when it is taken in deg" in kinds[0]
-    assert kinds[1] == "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target"
-    kinds = [each.kind for each in run_ik_test(IkTest(refuses, OM, examples=40)).findings]
-    assert kinds[0] == "counts otherwise: every answer is right when it is taken in degrees"
-    assert kinds[1] == "refuses a target within reach"
+
+def refuses(x, y, z, pitch):
+    return None if y > 0.1 else lower_base(x, y, z, pitch)
+
+
+def low_on_the_right(x, y, z, pitch):
+    return correct(x, y, z - 0.017 * (y < 0), pitch)
+
+
+def wide_of_far_targets(x, y, z, pitch):
+    return lower_base(x, y + 0.05 * y * (y > 0.15), z, pitch)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("ik", "kinds"),
+    [
+        (
+            both(lambda *target: refuses(*target) or [], in_degrees),
+            [f"{IN_DEGREES}, but {LOWER}, at every target", "refuses a target within reach"],
+        ),
+        (
+            both(low_on_the_right, in_degrees),
+            [f"{IN_DEGREES}, but {LOWER}, at many targets", f"is {LOWER}, at many targets"],
+        ),
+    ],
+)
+def test_what_is_wrong_besides_is_found_too(ik, kinds):
+    findings = run_ik_test(IkTest(ik, OM, examples=40)).findings
+    assert [each.kind for each in findings[:2]] == kinds
+
+
+@pytest.mark.nightly
+def test_what_is_wrong_besides_both_is_a_finding_of_its_own():
+    ik = both(wide_of_far_targets, in_degrees)
+    kinds = [each.kind for each in run_ik_test(IkTest(ik, OM, examples=40)).findings]
+    assert kinds[0].startswith("counts otherwise: ")
+    assert kinds[0].endswith(f" right when it is taken in degrees, but {LOWER}, at every target")
+    assert kinds[0] != f"{IN_DEGREES}, but {LOWER}, at every target"
+    assert "misses the position" in kinds
+    assert not any(each.startswith("is off") for each in kinds)
 
 
 @pytest.mark.nightly
@@ -183,6 +259,7 @@ def test_lengths_of_a_slide_and_the_zero_of_a_joint_without_limits_are_recognise
         lambda x, y, z, pitch: correct(1.1 * x, 1.1 * y, z, pitch),
         answers(lambda a, b, c, d: [a, b + 0.1 * np.sin(a), c, d]),
         answers(lambda a, b, c, d: [a, b, c * 0.9, d]),
+        both(lambda x, y, z, pitch: correct(x, y, 1.1 * z - 0.017, pitch), in_degrees),
     ],
 )
 def test_what_is_wrong_by_no_convention_is_not_said_to_be_right_by_one(ik):
