@@ -17,6 +17,7 @@ from harness.plugins.iktest.strategies.tasks import Task, task_error, task_jacob
 
 LENGTHS = {"metres": 1.0, "centimetres": 0.01, "millimetres": 0.001}
 ANGLES = {"": 1.0, "is given in degrees": np.pi / 180, "counts upwards": -1.0}
+ROLLS = {"quat_wxyz": -1, "quat_xyzw": 1}  # places by which the other order of w, x, y, z is rolled
 STARTS = (0.0, np.pi / 2, -np.pi / 2, np.pi)  # [rad], of a joint's zero, from which a fit starts
 
 MOST_SAMPLES, MOST_STEPS = 10, 12
@@ -35,12 +36,14 @@ class Convention:
         offset: The zero of each joint, shape (dof,) [rad or m].
         length: The unit of a target's position [m].
         angle: The unit of a target's pitch [rad], negative if it counts upwards.
+        roll: The places by which a target's quaternion is rolled, as in `ROLLS`; 0 in its order.
     """
 
     scale: FloatArray
     offset: FloatArray
     length: float = 1.0
     angle: float = 1.0
+    roll: int = 0
 
     @classmethod
     def plain(cls, dof: int) -> Convention:
@@ -65,6 +68,7 @@ class Convention:
         found = call_arguments(words, scaled, self.answer(seed))
         if "pitch" in found:
             found["pitch"] = float(found["pitch"]) / self.angle
+        found |= {word: np.roll(found[word], self.roll) for word in ROLLS if word in found}
         return found
 
     def text(self, chain: Chain) -> str:
@@ -88,14 +92,17 @@ class Convention:
                 parts.append(f"{name} is {amount} {'more' if offset > 0 else 'less'}")
         parts += [f"the target is given in {unit[self.length]}"] if self.length != 1 else []
         parts += [f"`pitch` {word}" for word, value in ANGLES.items() if value == self.angle != 1]
+        if self.roll:
+            parts.append(f"the quaternion's w comes {'last' if self.roll < 0 else 'first'}")
         return " and ".join(parts)
 
 
 def target_units(chain: Chain, words: Sequence[str]) -> Iterator[Convention]:
     """Conventions with other units of targets, the plain one first."""
     angles = ANGLES.values() if "pitch" in words else [1.0]
-    for length, angle in product(LENGTHS.values(), angles):
-        yield replace(Convention.plain(chain.dof), length=length, angle=angle)
+    rolls = [0, *(ROLLS[word] for word in words if word in ROLLS)]
+    for length, angle, roll in product(LENGTHS.values(), angles, rolls):
+        yield replace(Convention.plain(chain.dof), length=length, angle=angle, roll=roll)
 
 
 def answer_units(chain: Chain, convention: Convention) -> Iterator[Convention]:

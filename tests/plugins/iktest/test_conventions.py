@@ -5,7 +5,8 @@ from math import cos, degrees, pi, sin
 import numpy as np
 import pytest
 
-from harness.plugins.iktest import IkTest, run_ik_test
+from harness.core.spatial import SE3
+from harness.plugins.iktest import IkTest, check_ik, run_ik_test
 from harness.robot.robot_source import RobotSource
 from tests.plugins.iktest.arms import OM, correct, ur3e
 from tests.plugins.iktest.test_joint_limits import spherical
@@ -186,6 +187,42 @@ def test_so_they_are_of_an_arm_that_takes_poses(base, change, words):
     [kind] = [each.kind for each in findings if each.property == "reaches"]
     assert kind == f"counts otherwise: every answer is right when {words}, at every target"
     assert not any("off by" in each.kind or "misses" in each.kind for each in findings[1:])
+
+
+def w_first(position, quat_wxyz):
+    """A right solver."""
+    return ur3e(SE3.from_xyz_quat(position, quat_wxyz).matrix())
+
+
+def w_last(position, quat_xyzw):
+    """A right solver, too."""
+    return w_first(position, np.roll(quat_xyzw, 1))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("ik", "words"),
+    [
+        (lambda position, quat_wxyz: w_last(position, quat_wxyz), "last"),
+        (lambda position, quat_xyzw: w_first(position, quat_xyzw), "first"),
+        (
+            lambda position, quat_wxyz: w_last(position - [0, 0, 0.017], quat_wxyz),
+            f"last, but {LOWER}, at every target",
+        ),
+    ],
+)
+def test_the_other_order_of_a_quaternion_is_recognised(ik, words):
+    kinds = [each.kind for each in run_ik_test(IkTest(ik, "ur3e", examples=20)).findings]
+    assert kinds[0] == (
+        f"counts otherwise: every answer is right when the quaternion's w comes {words}"
+    )
+    assert not any("off by" in kind or "misses" in kind for kind in kinds[1:])
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("ik", [w_first, w_last])
+def test_either_order_is_right(ik):
+    check_ik(ik, "ur3e", examples=10)
 
 
 IN_DEGREES = "counts otherwise: every answer is right when it is taken in degrees"
