@@ -1,5 +1,6 @@
 """The page of two runs in a real browser, and how their steps are aligned."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -123,6 +124,8 @@ def test_plots_show_both_runs(page):
 def test_a_telephone_and_no_scripts_show_the_differences(browser, file):
     with visits(browser) as visit:
         narrow = visit(file, width=390, height=800).page
+        [opened] = re.findall(r"TCP is farthest apart at t=([\d.]+)", narrow.content())
+        assert narrow.get_attribute("#track", "aria-valuenow") == f"{float(opened):.3f}"
         assert narrow.evaluate("document.documentElement.scrollWidth") <= 390
         plain = visit(file, scripts=False)
         assert "joint1: 1.2" in plain.text("#summary")

@@ -40,6 +40,7 @@ def comparison_page(
         "pairs": _indices(first, second, comparison.changes),
         "parting": None if parting is None else {"time": parting.time, "text": text},
         "farthest": [{"time": each.time, "text": each.text} for each in comparison.farthest],
+        "opens": next((each.time for each in (*comparison.farthest, parting) if each), 0.0),
         "warnings": comparison.warnings,
         "groups": groups,
     }

@@ -144,13 +144,13 @@ class _Progress:
         self._show()
 
     def run(self, number: int, result: CaseResult) -> None:
-        """Count a run."""
+        """Count a run, in the order in which they end; its name has the order of the search."""
         self._done = number
         from harness.reporting.suite.cause import cause_of
 
         self._failed += result.outcome != "passed"
         if (cause := cause_of(result)) is not None:
-            self._log(f"run {number} {result.outcome}: {cause.text}")
+            self._log(f"{result.case} {result.outcome}: {cause.text}")
         self._show()
 
     def _log(self, text: str) -> None:

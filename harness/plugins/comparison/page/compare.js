@@ -92,7 +92,7 @@ async function start() {
   if (scene) makeSides({ ...scene, follows: false, toolPosition: () => runs[0].focus.points[0] }, () => clock.time, "comparison", false);
   listenToKeys(clock, { nextStep, nextFailure: () => facts.parting && seek(facts.parting.time) });
   const place = readAddress(location.hash);
-  seek(place.time ?? facts.parting?.time ?? 0);
+  seek(place.time ?? facts.opens);
   keepDrawing(clock, scene);
 }
 

@@ -93,7 +93,7 @@ def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_pat
     assert causes[("y",)]["y"] == pytest.approx(-0.4, abs=0.005)
     printed, log = capsys.readouterr()
     assert "searching: " in log, "a search that is not watched on a terminal says what it does"
-    assert "failed: " in log
+    assert f"run{found['first_failure']} failed: " in log, "as the page and the last lines call it"
     headings = re.findall(r"FAILED in \d+ runs?: (.*) \(line (\d+)\)", printed)
     assert {*headings} == {
         ("failed: formula always (x(ball) < 0.3)", "9"),
