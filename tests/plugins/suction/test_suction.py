@@ -86,6 +86,14 @@ def test_an_attachment_holds_nothing_where_the_cup_does_not(tmp_path):
             ["'ball' is too small a sphere for the suction cup", "30.0 mm", "needs 52.0 mm"],
         ),
         (
+            "pick: ball",
+            {
+                "head": HEAD.replace("suction_cup", "suction_array"),
+                "objects": "  - {name: ball, sphere: {radius: 6 cm}, pose: {xyz: [0, 0, 0.21]}}\n",
+            },
+            ["'ball' is a sphere, and 4 suction cups do not close on one"],
+        ),
+        (
             "pick: stick",
             {
                 "objects": "  - {name: stick, box: {size: [0.03, 0.03, 0.2]},"

@@ -131,11 +131,13 @@ def why_not_held(
     cup = max(gripper.cups, key=lambda each: each.radius)
     balls = [face for face in faces if face.is_round and np.isfinite(face.bulge)]
     if len(balls) == len(faces):
-        least = (cup.radius**2 + cup.depth**2) / (2 * cup.depth)
+        least = max((cup.radius**2 + cup.depth**2) / (2 * cup.depth), cup.radius)
+        if len(places) > 1 and balls[0].bulge >= least:
+            return f"'{obj.name}' is a sphere, and {len(places)} suction cups do not close on one"
         return (
             f"'{obj.name}' is too small a sphere for the suction cup: its radius is"
             f" {1e3 * balls[0].bulge:.1f} mm, and a cup of {1e3 * cup.radius:.1f} mm needs"
-            f" {1e3 * max(least, cup.radius):.1f} mm"
+            f" {1e3 * least:.1f} mm"
         )
     face = max(faces, key=lambda each: each.half[0] * each.half[1])
     extent = 2e3 * (np.ptp(places[:, :2], axis=0) / 2 + cup.radius + MARGIN)
