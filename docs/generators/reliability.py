@@ -117,8 +117,8 @@ run before a change, or, where the last column says so, of one with the exhausti
 BUSY = """## On a busy machine
 
 Tests are written so that no verdict depends on wall time: a wait ends by its event, or by a cap
-that only a hang is to reach (600 s; an hour on a Ray cluster). Eighteen programs next to the default
-tests show whether that is so:
+that only a hang is to reach (600 s; an hour on a Ray cluster). Eighteen programs next to the
+default tests show whether that is so:
 
 ```sh
 for each in $(seq 18); do while :; do :; done & done
