@@ -18,8 +18,10 @@ SCOPE = (
     "harness/planning/verification",
     "harness/recording/digest.py",
     "harness/session",
+    "harness/plugins/arms",
     "harness/plugins/cameras/expectations",
     "harness/plugins/faults/observers",
+    "harness/plugins/objects",
     "harness/plugins/paths",
 )
 

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.always import Always
-from harness.judging.expectations.displaced import Displaced
 from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.grasped import Grasped
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.named_target import NamedTarget
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.static import Static
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
+from harness.plugins.arms.expectations.named_target import NamedTarget
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.objects.expectations.displaced import Displaced
+from harness.plugins.objects.expectations.in_contact import InContact
+from harness.plugins.objects.expectations.static import Static
 from harness.plugins.paths.expectations.tcp_path import TcpPath
 from tests.judging.synthetic_run import force, heights, lift_run, make_run, step, verdict
 

@@ -10,25 +10,25 @@ from harness.core.spatial import SE3
 from harness.judging.distances import unknown_distances
 from harness.judging.excused_force import load_of
 from harness.judging.expectations.always import Always
-from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
-from harness.judging.expectations.displaced import Displaced
 from harness.judging.expectations.duration import DurationCheck
 from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.grasped import Grasped
-from harness.judging.expectations.in_ import In
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.named_target import NamedTarget
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.static import Static
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.judging.hold import HOLD_TIME, why_not_between
 from harness.judging.temporal import eventually
 from harness.judging.window import window_of
+from harness.plugins.arms.expectations.clearance import Clearance
+from harness.plugins.arms.expectations.named_target import NamedTarget
+from harness.plugins.objects.expectations.displaced import Displaced
+from harness.plugins.objects.expectations.in_ import In
+from harness.plugins.objects.expectations.in_contact import InContact
+from harness.plugins.objects.expectations.static import Static
 from harness.recording.run import Finding
 from harness.robot.description import NamedState, PlanningGroup
 from tests.judging.synthetic_run import (

@@ -9,15 +9,12 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.always import Always
-from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
 from harness.judging.expectations.duration import DurationCheck
 from harness.judging.expectations.grasped import Grasped
-from harness.judging.expectations.in_ import In
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.static import Static
 from harness.judging.expectations.tcp_pose import TcpPose
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.within_limits import WithinLimits
@@ -31,8 +28,11 @@ from harness.judging.observations import (
 )
 from harness.judging.placed import PlacedExpectation, describe
 from harness.language.poses import Pose
+from harness.plugins.arms.expectations.clearance import Clearance
 from harness.plugins.cameras.expectations.sees import HueRange, Sees
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.objects.expectations.in_ import In
+from harness.plugins.objects.expectations.static import Static
 from harness.plugins.paths.expectations.fraction import FractionCheck
 from harness.plugins.paths.expectations.tcp_path import TcpPath
 from tests.judging.synthetic_run import attachment, heights, lift_run, make_run

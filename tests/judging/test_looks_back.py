@@ -5,15 +5,15 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.joints import Joints
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.named_target import NamedTarget
-from harness.judging.expectations.on import On
 from harness.judging.expectations.tcp_pose import TcpPose
 from harness.judging.expectations.upright import Upright
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
+from harness.plugins.arms.expectations.named_target import NamedTarget
+from harness.plugins.objects.expectations.in_contact import InContact
+from harness.plugins.objects.expectations.on import On
 from harness.recording.read_run import read_run
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from tests.judging.expectations.test_clearance_of_arms import TOWARDS

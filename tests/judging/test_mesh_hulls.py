@@ -12,7 +12,7 @@ from harness.core.solids import volume_of
 from harness.core.spatial import SE3
 from harness.judging.body_motion import balls_of, lowest_points, middle_of
 from harness.judging.contacts import unseen_contacts
-from harness.judging.expectations.in_ import In
+from harness.plugins.objects.expectations.in_ import In
 from harness.recording.consistency import run_flaws
 from harness.recording.plain import from_plain, to_plain
 from harness.recording.run import ObjectRecord

@@ -14,10 +14,10 @@ from harness.expectations import (
     Quantity,
     frame_poses,
 )
-from harness.judging.expectations.displaced import Displaced
 from harness.judging.observations import ExpectationError, UndeclaredObservation
 from harness.judging.placed import as_expectation
 from harness.language.expectation import ExpectationFields
+from harness.plugins.objects.expectations.displaced import Displaced
 from tests.judging.evidence_runs import travelling
 from tests.judging.synthetic_run import BOX, TABLE, at, make_run, thing, verdict
 

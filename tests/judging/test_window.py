@@ -8,14 +8,10 @@ import pytest
 from harness.core.amounts import amount, amounts, percentages
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.gripper import GripperState
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.joints import Joints
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.named_target import NamedTarget
 from harness.judging.expectations.never import Never
-from harness.judging.expectations.on import On
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.static import Static
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.joints import gripper_joints, is_measured, near, resting_joints
@@ -26,8 +22,12 @@ from harness.judging.window import (
     refuse_unrecorded_steps,
     window_of,
 )
+from harness.plugins.arms.expectations.named_target import NamedTarget
 from harness.plugins.cameras.expectations.sees import Sees
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.objects.expectations.in_contact import InContact
+from harness.plugins.objects.expectations.on import On
+from harness.plugins.objects.expectations.static import Static
 from harness.robot.mechanism import Mimic
 from tests.judging.synthetic_run import ROBOT, changed, make_run, step
 

@@ -15,12 +15,12 @@ from harness.core.errors import HarnessError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
-from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.static import Static
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
+from harness.plugins.arms.expectations.clearance import Clearance
+from harness.plugins.objects.expectations.static import Static
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.drawings import Drawings, MeshRecord

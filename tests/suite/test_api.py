@@ -10,11 +10,11 @@ import harness
 from harness.core.resources import data_folder
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.duration import DurationCheck
-from harness.judging.expectations.named_target import NamedTarget
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.language.reading.load import load_scenario, parse_scenario
 from harness.language.reading.written import scenario_text
 from harness.language.scenario import Scenario
+from harness.plugins.arms.expectations.named_target import NamedTarget
 from harness.steps.move_to import MoveTo
 from harness.steps.wait import Wait
 from harness.suite.discovery import UsageError

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.never import Never
+from harness.plugins.arms.expectations.clearance import Clearance
 from harness.reporting.margins import margin_share
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three

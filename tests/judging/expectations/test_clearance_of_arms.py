@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from harness.judging.contacts import was_in_robot, welded
-from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.released import Released
 from harness.judging.hands import of_arm
 from harness.judging.hold import weld_note
+from harness.plugins.arms.expectations.clearance import Clearance
+from harness.plugins.objects.expectations.in_contact import InContact
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.steps.test_several_arms import PAIR, box

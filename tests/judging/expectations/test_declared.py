@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from harness.judging.expectation import Expectation
-from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.placed import Placed
 from harness.judging.expectations.tcp_pose import TcpPose
 from harness.language.language import PREDICATES
 from harness.language.poses import Pose
+from harness.plugins.arms.expectations.clearance import Clearance
 from harness.plugins.cameras.expectations.sees import HUES, HueRange, Sees
 from harness.plugins.formulas.expectations.formula import Formula
 from harness.plugins.paths.expectations.tcp_path import TcpPath

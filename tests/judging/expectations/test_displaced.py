@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.displaced import Displaced
-from harness.judging.expectations.in_ import In
 from harness.judging.expectations.never import Never
-from harness.judging.expectations.static import Static
 from harness.judging.expectations.upright import Upright
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.objects.expectations.displaced import Displaced
+from harness.plugins.objects.expectations.in_ import In
+from harness.plugins.objects.expectations.static import Static
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.synthetic_run import BOX, TABLE, at, heights, make_run, thing, verdict

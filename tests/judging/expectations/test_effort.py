@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.effort import Effort
+from harness.plugins.arms.expectations.effort import Effort
 from harness.robot.mechanism import Mimic
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Three

@@ -8,8 +8,8 @@ import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
-from harness.judging.expectations.in_ import In, outline
 from harness.judging.window import Window
+from harness.plugins.objects.expectations.in_ import In, outline
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.surfaces import GEOMETRIES, surface_of

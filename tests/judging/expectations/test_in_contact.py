@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.collision import Collision
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.never import Never
+from harness.plugins.objects.expectations.in_contact import InContact
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import DRIFT, Evidence, Free, Three
 from tests.judging.synthetic_run import changed, force, lift_run, make_run, verdict

@@ -5,7 +5,7 @@ import pytest
 
 from harness.judging.expectations.gripper import GripperState
 from harness.judging.expectations.joints import Joints
-from harness.judging.expectations.named_target import NamedTarget
+from harness.plugins.arms.expectations.named_target import NamedTarget
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Three
 from tests.judging.synthetic_run import make_run, verdict

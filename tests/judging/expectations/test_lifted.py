@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.displaced import Displaced
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.hold import moves_in_hand
+from harness.plugins.objects.expectations.displaced import Displaced
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import AT_ONCE, DRIFT, Evidence, Free, Three
 from tests.judging.synthetic_run import (

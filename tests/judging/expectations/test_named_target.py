@@ -1,6 +1,6 @@
 """named_target: the joints of a group stand at a state of the SRDF."""
 
-from harness.judging.expectations.named_target import NamedTarget
+from harness.plugins.arms.expectations.named_target import NamedTarget
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.synthetic_run import make_run

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box
-from harness.judging.expectations.on import On
 from harness.judging.expectations.placed import Placed
+from harness.plugins.objects.expectations.on import On
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.synthetic_run import BOX, CYLINDER, TABLE, at, force, make_run, thing, verdict

@@ -6,8 +6,8 @@ import pytest
 from harness.core.geometry import Box, Cylinder
 from harness.core.spatial import SE3
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.static import Static
 from harness.language.poses import Pose, PoseTolerance
+from harness.plugins.objects.expectations.static import Static
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import AT_ONCE, Evidence, Free, Three
 from tests.judging.synthetic_run import (

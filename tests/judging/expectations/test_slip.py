@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.judging.expectations.slip import Slip
+from harness.plugins.objects.expectations.slip import Slip
 from harness.session.observation.tracking import held_finding as finding_of_hold
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import AT_ONCE, DRIFT, Evidence, Free, Three

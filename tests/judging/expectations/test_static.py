@@ -8,7 +8,7 @@ import pytest
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.static import Static
+from harness.plugins.objects.expectations.static import Static
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import AT_ONCE, Evidence, Free, Three
 from tests.judging.synthetic_run import BOX, DT, TABLE, at, changed, make_run, step, verdict

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.tracking_error import TrackingError
+from harness.plugins.arms.expectations.tracking_error import TrackingError
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.synthetic_run import ROBOT, changed, make_run, verdict

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectations.displaced import Displaced
-from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.on import On
-from harness.judging.expectations.static import Static
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
+from harness.plugins.objects.expectations.displaced import Displaced
+from harness.plugins.objects.expectations.in_contact import InContact
+from harness.plugins.objects.expectations.on import On
+from harness.plugins.objects.expectations.static import Static
 from tests.judging.evidence import AT_ONCE, Evidence, Free
 from tests.judging.synthetic_run import (
     BOX,

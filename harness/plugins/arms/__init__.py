@@ -1,0 +1,1 @@
+"""How well arms follow, how hard they work, and how far they keep from things."""

@@ -1,0 +1,1 @@
+"""Where objects are, what they touch, and whether they stay."""

@@ -1,0 +1,1 @@
+"""Expectations of where objects are, what they touch, and whether they stay."""
