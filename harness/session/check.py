@@ -8,6 +8,8 @@ from pathlib import Path
 
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
+from harness.core.geometry import bounding_radius
+from harness.core.world import WorldObject
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
@@ -61,11 +63,14 @@ def check_file(
     records, _ = predict(program, prepared.ports)
     predicted: dict[Problem, tuple[str, ...]] = {}
     specs = {step.path: step.spec for step in program.all_steps()}
-    not_taken: set[str] = set()
+    not_taken, brought = set[str](), _brought(program.world.objects)
+    known = [{each.first, each.second} for each in overlaps]
     for record in unexpected(records):
         spec = specs.get(record.path)
         if isinstance(spec, Pick | Grasp):
             not_taken.add(spec.object)
+            if spec.object in brought and not getattr(spec, "track", False):
+                continue
         missing = record.explanation.find(NotHeldFailure)
         if missing is not None and missing.not_held in not_taken:
             continue  # it follows from the pick that is reported
@@ -83,14 +88,20 @@ def check_file(
             *prepared.notes,
             *(f"robot: {note}" for note in mass_notes(program.description)),
             *(overlap_note(prepared, touch) for touch in overlaps),
-            *(_touch_note(touch) for touch in touches if not _is_among(touch, overlaps)),
+            *(_touch_note(each) for each in touches if {each.first, each.second} not in known),
         ),
     )
 
 
-def _is_among(touch: Touch, others: Sequence[Touch]) -> bool:
-    """Whether others have the same two bodies."""
-    return any({touch.first, touch.second} == {each.first, each.second} for each in others)
+def _brought(objects: Sequence[WorldObject]) -> set[str]:
+    """The objects on or near a belt or a turntable, which may bring them elsewhere."""
+    return {
+        each.name
+        for belt in objects
+        for each in objects
+        if belt.surface_motion is not None
+        and each.pose.distance_to(belt.pose)[0] < max(map(bounding_radius, belt.shapes))
+    }
 
 
 def _problems_of_choices(
@@ -108,8 +119,8 @@ def _problems_of_choices(
 
 
 def _touch_note(touch: Touch) -> str:
-    depth = -1000 * touch.distance
-    return f"where the robot starts, {touch.first} and {touch.second} touch ({depth:.1f} mm deep)"
+    depth = f"{-1000 * touch.distance:.1f} mm deep"
+    return f"where the robot starts, {touch.first} and {touch.second} touch ({depth})"
 
 
 def _loc(program: Program, path: str) -> Loc:

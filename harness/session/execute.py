@@ -188,15 +188,6 @@ class ProgramExecution:
         )
 
 
-def execute_program(
-    program: Program, ports: PlanningPorts, simulator: Simulator, on_step: OnStep
-) -> Execution:
-    """Run a whole program, whether or not steps fail; see `ProgramExecution` for the arguments."""
-    execution = ProgramExecution(program, ports, simulator, on_step, keep_going=True)
-    execution.run(program.steps)
-    return execution.finish()
-
-
 def _own(failure: Failure | None) -> StepFailed | None:
     """A step's failure; of a failed step inside it, only its name, since that step has its own."""
     if isinstance(failure, RunEndedError):

@@ -10,7 +10,7 @@ from harness.ports.planning import PlanningPorts
 from harness.ports.scene import PlanningScene, Touch
 from harness.recording.step_record import StepRecord
 from harness.session.dry_run import DryPlanner, DrySimulator
-from harness.session.execute import execute_program
+from harness.session.execute import ProgramExecution
 
 
 def predict(
@@ -32,7 +32,9 @@ def predict(
         poses[step.path] = (poses.get(step.path, (pose, pose))[0], pose)
 
     dry = ports._replace(planner=DryPlanner(ports.planner, program.description))
-    return execute_program(program, dry, simulator, watch).steps, poses
+    execution = ProgramExecution(program, dry, simulator, watch, keep_going=True)
+    execution.run(program.steps)
+    return execution.finish().steps, poses
 
 
 def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...]:
@@ -67,13 +69,9 @@ def unexpected(records: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     return tuple(
         record
         for record in failed
-        if not any(_inside(record.path, path) for path in expected)
+        if not any(record.path.startswith(f"{path}.") for path in expected)
         and not any(
-            _inside(other.path, record.path) and other.error_code == record.error_code
+            other.path.startswith(f"{record.path}.") and other.error_code == record.error_code
             for other in failed
         )
     )
-
-
-def _inside(path: str, around: str) -> bool:
-    return path.startswith(f"{around}.")

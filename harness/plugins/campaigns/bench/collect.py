@@ -17,7 +17,7 @@ from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion
 from harness.recording.step_record import StepRecord
 from harness.session.dry_run import DryPlanner, DrySimulator
-from harness.session.execute import execute_program
+from harness.session.execute import ProgramExecution
 from harness.session.prepare import Prepared, prepare
 
 OnMotion = Callable[["MotionTrials"], None]
@@ -78,7 +78,8 @@ def collect(
         simulator.watch(step, record)
         bench.step = step if record is None else bench.step
 
-    execute_program(prepared.program, prepared.ports._replace(planner=bench), simulator, watch)
+    program, ports = prepared.program, prepared.ports._replace(planner=bench)
+    ProgramExecution(program, ports, simulator, watch, keep_going=True).run(program.steps)
     return bench.motions
 
 
