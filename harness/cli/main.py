@@ -78,6 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if arguments is None else arguments
     parsed = parser_of(words).parse_args(words)
     from harness.cli.output import OutputError, complain, guarded, only_json_on_stdout, say
+    from harness.core.registry import registry
 
     if parsed.command is None:
         for line in GREETING.splitlines():
@@ -95,7 +96,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return code
     if command.collects_garbage:
         gc.enable()
-    given = getattr(parsed, "json", False) or getattr(parsed, "format", "") in ("json", "sarif")
+    documents = ("json", *registry("result_format").built_in_modules)
+    given = getattr(parsed, "json", False) or getattr(parsed, "format", "") in documents
     is_json = given and not command.writes_json_in_parts
     ticks = getattr(parsed, "ticks", True) and not getattr(parsed, "in_process", False)
     try:

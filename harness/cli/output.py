@@ -224,12 +224,19 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
         return EXIT_CODES["error"]
 
 
-_documents: list[object] = []
+_documents: list[str] = []
+
+
+def say_document(text: str) -> None:
+    """Write a document to stdout, as it is, when the command has ended."""
+    _documents.append(text)
 
 
 def say_json(document: object) -> None:
     """Write a document to stdout as JSON when the command has ended."""
-    _documents.append(document)
+    from harness.reporting.json_text import json_text
+
+    say_document(json_text(document))
 
 
 @contextmanager
@@ -238,8 +245,6 @@ def only_json_on_stdout() -> Iterator[None]:
 
     A text buffer of the caller's in place of stdout receives everything.
     """
-    from harness.reporting.json_text import json_text
-
     sys.stdout.flush()
     _documents.clear()
     try:
@@ -257,4 +262,4 @@ def only_json_on_stdout() -> Iterator[None]:
             os.dup2(true_stdout, descriptor)
             os.close(true_stdout)
     for document in _documents:
-        output().document(json_text(document))
+        output().document(document)

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from harness.cli.arguments import folder, override_argument, seconds
+from harness.core.registry import registry
+
+if TYPE_CHECKING:
+    from harness.reporting.suite.result_format import ResultFormat
 
 
 def add_paths(command: argparse.ArgumentParser) -> None:
@@ -75,19 +80,11 @@ def add_json(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help=text)
 
 
-def add_format(command: argparse.ArgumentParser, **more: str) -> None:
-    """`--format`, and `--json` for one of its values.
-
-    Args:
-        more: Further values, with what each is.
-    """
-    formats = {
-        "full": "for people",
-        "short": "a line each",
-        "json": "one document",
-        "github": "annotations",
-        **more,
-    }
+def add_format(command: argparse.ArgumentParser, *, is_of_runs: bool = True) -> None:
+    """`--format`, and `--json` for one of its values."""
+    formats = {"full": "for people", "short": "a line each", "json": "one document"}
+    known: list[type[ResultFormat]] = registry("result_format").built_in()
+    formats |= {each.name: each.text for each in known if each.is_of_runs or not is_of_runs}
     text = "; ".join(f"{name}: {what}" for name, what in formats.items())
     command.add_argument("--format", choices=tuple(formats), default="full", help=text)
     text = "the same as --format json"

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, output, say, say_text
 from harness.core.printable import counted
+from harness.core.registry import registry
+from harness.reporting.suite.result_format import ResultFormat, result_formats
 from harness.suite.hooks import NO_HOOKS, SuiteHooks
 
 if TYPE_CHECKING:
@@ -25,14 +27,13 @@ MOST_FAILURES = 20  # failures that are shown in full; the rest is counted
 def write_suite_files(
     arguments: argparse.Namespace, suite: SuiteRun, hooks: SuiteHooks = NO_HOOKS
 ) -> tuple[Path | None, Columns | None]:
-    """Write the files of a suite, and GitHub's summary of the job where there is one.
+    """Write the files of a suite, and the summary of the service that runs the command.
 
     Returns:
         The page, and what varies in the cases; None where no files are written.
     """
-    from harness.reporting.suite.github import append_summary
-
-    append_summary(suite.record)
+    for each in result_formats():
+        each.write_summary(suite.record)
     if not has_page(arguments, suite, hooks):
         return None, None
     from harness.reporting.suite.history import history_of
@@ -61,13 +62,13 @@ def show_json(suite: SuiteRun) -> int:
 
 
 def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
-    """Print a line for each problem: for editors, or as GitHub's annotations."""
+    """Print a line for each problem: for editors, or for another program."""
     from harness.reporting.sampled import missed
     from harness.reporting.suite.cause import short_lines
-    from harness.reporting.suite.github import error_annotations
 
-    if arguments.format == "github":
-        for line in error_annotations(suite.failures()):
+    if arguments.format != "short":
+        chosen: ResultFormat = registry("result_format")[arguments.format]()
+        for line in chosen.failures(suite.failures()):
             output().command(line)
     else:
         say(*short_lines(suite.failures()))
@@ -92,7 +93,6 @@ def show_results(
         columns: What varies in the cases; None where this is not known yet.
     """
     from harness.reporting.sampled import missed
-    from harness.reporting.suite.github import annotations_for_action
     from harness.reporting.terminal import Style, report_link, summary
 
     style = Style.of(sys.stdout)
@@ -116,8 +116,9 @@ def show_results(
     elif written := [result for result in suite.results.values() if result.report_dir]:
         one = report_link(written[0], style)
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
-    for line in annotations_for_action(suite.failures()):
-        output().command(line)
+    for each in result_formats():
+        for line in each.remarks(suite.failures()):
+            output().command(line)
     show_interruption(arguments, suite, seconds)
 
 

@@ -217,7 +217,7 @@ class SessionResults:
             suite_of,
             write_session_files,
         )
-        from harness.reporting.suite.github import annotations_for_action, append_summary
+        from harness.reporting.suite.result_format import result_formats
 
         records = from_plains(list(self.records.values()))
         self._lines = small_margins(records, getattr(self._config, "cache", None))
@@ -226,12 +226,14 @@ class SessionResults:
         history = Path(earlier) if earlier else None
         if folder is not None and (line := write_session_files(folder, suite, history)):
             self._lines.append(line)
-        try:
-            append_summary(suite)
-        except HarnessError as error:
-            self._lines.append(str(error))
-        self._lines = [terminal_text(line) for line in self._lines]
-        self._lines += map(printable, annotations_for_action(case.result for case in suite.cases))
+        remarks: list[str] = []
+        for each in result_formats():
+            remarks += each.remarks(case.result for case in suite.cases)
+            try:
+                each.write_summary(suite)
+            except HarnessError as error:
+                self._lines.append(str(error))
+        self._lines = [*map(terminal_text, self._lines), *map(printable, remarks)]
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._lines:

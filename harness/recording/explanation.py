@@ -116,15 +116,6 @@ class StraightResult(Detail):
 
 
 @dataclass(frozen=True)
-class ArcResult(Detail):
-    """The circle of an arc [m], and the angle that it sweeps [rad]."""
-
-    center: Floats
-    radius: float
-    sweep: float
-
-
-@dataclass(frozen=True)
 class Alternative(Detail):
     """One of several goals: its solutions, or its failure."""
 

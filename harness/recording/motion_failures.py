@@ -180,51 +180,6 @@ class DeviationFailure(AdvisedFailure):
 
 
 @dataclass(frozen=True)
-class BlendFailure(AdvisedFailure):
-    """A blend that cannot be made with its radius [m]."""
-
-    blend_radius: float
-
-    @property
-    def advice(self) -> str:
-        """A smaller radius, or a stop."""
-        return "make the `blend_radius` smaller, or leave it out: then the motion stops there"
-
-
-@dataclass(frozen=True)
-class CircleFailure(AdvisedFailure):
-    """Three points that define no arc.
-
-    Attributes:
-        reason: Start and goal are one point; two others of the points are one, or all three are on
-            one line; the distances of start and goal from the centre differ.
-        start_radius: The start's distance from the centre [m].
-        goal_radius: The goal's distance from the centre [m].
-    """
-
-    reason: Literal["whole turn", "one line", "radii"]
-    start_radius: float | None = None
-    goal_radius: float | None = None
-
-    @property
-    def advice(self) -> str:
-        """Points that define an arc."""
-        match self.reason:
-            case "whole turn":
-                return (
-                    "leave the step out where the arm is to stay; for a whole turn write two "
-                    "`circ`, the first of them to the opposite point of the circle"
-                )
-            case "one line":
-                return "give an `interim` point off the line, or use `lin` for a straight motion"
-            case "radii":
-                return (
-                    "choose a `center` that is as far from the start as from the goal, or give an "
-                    "`interim` point instead"
-                )
-
-
-@dataclass(frozen=True)
 class SequenceFailure(Detail):
     """The item of a sequence that cannot be carried out, from 0."""
 

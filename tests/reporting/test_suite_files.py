@@ -8,12 +8,12 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from harness.plugins.ci.github import error_annotations, job_summary
 from harness.plugins.ci.suite_reporters.junit import JunitReporter
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import StepLine
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of, short_lines
-from harness.reporting.suite.github import error_annotations, job_summary
 from harness.reporting.suite.history import history_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite

@@ -7,17 +7,21 @@ import sys
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.command import SCENARIOS, Command
-from harness.cli.output import output, say, say_json, say_text
+from harness.cli.output import say, say_document, say_json, say_text
 from harness.cli.shared_options import add_format, add_paths, add_seed
 from harness.cli.work_bar import WorkBar
 from harness.core.errors import Problem
 from harness.core.printable import counted
+from harness.core.registry import registry
 from harness.suite.discovery import discover
 from harness.suite.header import read_header
 from harness.suite.outcome import EXIT_CODES
+
+if TYPE_CHECKING:
+    from harness.reporting.suite.result_format import ResultFormat
 
 MOST_CASES = 100  # parametrised cases of a file that are checked; running them checks the rest
 
@@ -32,23 +36,19 @@ class CheckCommand(Command):
     def add_options(self, command: argparse.ArgumentParser) -> None:
         add_paths(command)
         add_seed(command)
-        add_format(command, sarif="one document for code scanning, SARIF 2.1.0")
+        add_format(command, is_of_runs=False)
 
     def run(self, arguments: argparse.Namespace) -> int:
         files = discover(arguments.paths)
-        from harness.reporting.sarif import sarif_document
         from harness.reporting.suite.cause import short_problem
-        from harness.reporting.suite.github import problem_annotation
         from harness.reporting.terminal import Style
         from harness.session.check import check_file
 
         style = Style.of(sys.stdout)
         code = 0
         documents: list[object] = []
-        lines: list[str] = []
         problems: list[Problem] = []
         predicted: list[Problem] = []
-        format_problem = problem_annotation if arguments.format == "github" else short_problem
         work_bar = WorkBar()
         for number, (file, case, overrides) in enumerate(_cases(arguments, files)):
             if len(files) > 1:
@@ -64,9 +64,6 @@ class CheckCommand(Command):
             problems += found.problems
             predicted += found.predicted
             if arguments.format != "full":
-                lines += [
-                    format_problem(problem) for problem in (*found.problems, *found.predicted)
-                ]
                 continue
             for note in found.notes:
                 say(f"note: {note}")
@@ -85,15 +82,13 @@ class CheckCommand(Command):
             say(f"{name}: {style.outcome(outcome, summaries[outcome])}")
         if arguments.format == "json":
             say_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
-            return code
-        if arguments.format == "sarif":
-            say_json(sarif_document(problems, predicted))
-            return code
-        write = output().command if arguments.format == "github" else say
-        for line in dict.fromkeys(lines):
-            write(line)
-        if arguments.format == "short" and not code:
-            say(f"{counted(len(documents), 'case')} checked, no problem found")
+        elif arguments.format == "short":
+            say(*dict.fromkeys(map(short_problem, (*problems, *predicted))))
+            if not code:
+                say(f"{counted(len(documents), 'case')} checked, no problem found")
+        elif arguments.format != "full":
+            chosen: ResultFormat = registry("result_format")[arguments.format]()
+            say_document(chosen.problems(problems, predicted))
         return code
 
 

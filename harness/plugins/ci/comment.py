@@ -9,9 +9,9 @@ from urllib.parse import quote
 
 from harness.core.printable import counted
 from harness.plugins.ci.baseline import ShrunkMargin
+from harness.plugins.ci.github import SIGNS, markdown_cell
 from harness.plugins.ci.results import SavedSuite
 from harness.reporting.suite.failure_picture import picture_of
-from harness.reporting.suite.github import SIGNS, markdown_cell
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.suite.write import PAGE
 

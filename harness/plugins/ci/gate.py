@@ -22,8 +22,8 @@ from harness.plugins.ci.baseline import (
 )
 from harness.plugins.ci.comment import comment_text, shrunk_table
 from harness.plugins.ci.ctrf import ctrf_text
+from harness.plugins.ci.github import annotation
 from harness.plugins.ci.results import SavedSuite, read_results
-from harness.reporting.suite.github import annotation
 from harness.suite.discovery import UsageError
 from harness.suite.folders import refuse_unwritable_file
 from harness.suite.outcome import EXIT_CODES

@@ -5,8 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import combinations
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 import pinocchio as pin
@@ -17,7 +18,41 @@ from harness.core.types import FloatArray
 from harness.planning.cartesian.linear_path import LinkPath
 from harness.ports.goals import PoseGoal
 from harness.ports.motions import ArcPoint
-from harness.recording.motion_failures import CircleFailure
+from harness.recording.motion_failures import AdvisedFailure
+
+
+@dataclass(frozen=True)
+class CircleFailure(AdvisedFailure):
+    """Three points that define no arc.
+
+    Attributes:
+        reason: Start and goal are one point; two others of the points are one, or all three are on
+            one line; the distances of start and goal from the centre differ.
+        start_radius: The start's distance from the centre [m].
+        goal_radius: The goal's distance from the centre [m].
+    """
+
+    reason: Literal["whole turn", "one line", "radii"]
+    start_radius: float | None = None
+    goal_radius: float | None = None
+
+    @property
+    def advice(self) -> str:
+        """Points that define an arc."""
+        match self.reason:
+            case "whole turn":
+                return (
+                    "leave the step out where the arm is to stay; for a whole turn write two "
+                    "`circ`, the first of them to the opposite point of the circle"
+                )
+            case "one line":
+                return "give an `interim` point off the line, or use `lin` for a straight motion"
+            case "radii":
+                return (
+                    "choose a `center` that is as far from the start as from the goal, or give an "
+                    "`interim` point instead"
+                )
+
 
 LARGEST_RADIUS_DIFFERENCE = 1e-2
 """Largest difference of the radii of start and goal [m], as in Pilz; the centre is corrected."""

@@ -22,7 +22,20 @@ from harness.planning.ik.numeric import LinkTask
 from harness.planning.ik.task import part_of_pose
 from harness.planning.timing.joint_spline import CubicSpline
 from harness.recording.goal_failures import CollisionFailure
-from harness.recording.motion_failures import BlendFailure
+from harness.recording.motion_failures import AdvisedFailure
+
+
+@dataclass(frozen=True)
+class BlendFailure(AdvisedFailure):
+    """A blend that cannot be made with its radius [m]."""
+
+    blend_radius: float
+
+    @property
+    def advice(self) -> str:
+        """A smaller radius, or a stop."""
+        return "make the `blend_radius` smaller, or leave it out: then the motion stops there"
+
 
 JOINT_STEP = 0.03  # Between the samples of a joint motion [rad]
 BLEND_STEP = 0.002  # Between the poses that are solved in a transition [m], about

@@ -22,8 +22,8 @@ from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import joined, time_straight
 from harness.plugins.motions.curve_timing import RatedCurve, nearest_knots, time_curve
-from harness.plugins.motions.leg import Leg, Transition, transition
-from harness.recording.motion_failures import BlendFailure, DeviationFailure
+from harness.plugins.motions.leg import BlendFailure, Leg, Transition, transition
+from harness.recording.motion_failures import DeviationFailure
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,1 +1,1 @@
-"""The results of many runs: JSON for machines, JUnit XML, GitHub annotations, a page for people."""
+"""The results of many runs: JSON for machines, a page for people."""

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
-from harness.core.details import Details
+from harness.core.details import Detail, Details
+from harness.core.types import Floats
 from harness.planning.cartesian.line_goals import end_pose
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.motion_kind import MotionKind
 from harness.plugins.motions.circular_path import arc_to
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.motions import CircularMotion
-from harness.recording.explanation import ArcResult
+
+
+@dataclass(frozen=True)
+class ArcResult(Detail):
+    """The circle of an arc [m], and the angle that it sweeps [rad]."""
+
+    center: Floats
+    radius: float
+    sweep: float
 
 
 class ArcKind(MotionKind):

@@ -6,13 +6,16 @@ References:
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 from urllib.parse import quote
 
-from harness.core.errors import Problem
-from harness.core.versions import library_versions
+from harness.reporting.suite.result_format import ResultFormat
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from harness.core.errors import Problem
 
 SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -23,15 +26,24 @@ RULES = {
 }
 
 
-def sarif_document(invalid: Iterable[Problem], predicted: Iterable[Problem]) -> dict[str, Any]:
-    """The document."""
-    found = [("invalid-file", each) for each in invalid]
-    found += [("step-will-fail", each) for each in predicted]
-    rules = [{"id": name, "shortDescription": {"text": text}} for name, text in RULES.items()]
-    driver = {"name": "armharness", "version": library_versions()["armharness"], "rules": rules}
-    results = [_result(rule, problem) for rule, problem in dict.fromkeys(found)]
-    run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
-    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+class SarifFormat(ResultFormat):
+    """SARIF 2.1.0, which code scanning services read."""
+
+    name: ClassVar[str] = "sarif"
+    text: ClassVar[str] = "one document for code scanning, SARIF 2.1.0"
+    is_of_runs: ClassVar[bool] = False
+
+    def problems(self, invalid: Sequence[Problem], predicted: Sequence[Problem]) -> str:
+        from harness.core.versions import library_versions
+        from harness.reporting.json_text import json_text
+
+        found = [("invalid-file", each) for each in invalid]
+        found += [("step-will-fail", each) for each in predicted]
+        rules = [{"id": name, "shortDescription": {"text": text}} for name, text in RULES.items()]
+        driver = {"name": "armharness", "version": library_versions()["armharness"], "rules": rules}
+        results = [_result(rule, problem) for rule, problem in dict.fromkeys(found)]
+        run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
+        return json_text({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]})
 
 
 def _result(rule: str, problem: Problem) -> dict[str, Any]:

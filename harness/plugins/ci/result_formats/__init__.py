@@ -1,0 +1,1 @@
+"""Values of `--format` that services read, one module for each."""
