@@ -14,7 +14,7 @@ from harness.core.types import FloatArray
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.motion_kind import ConstrainedMotion, MotionKind
 from harness.planning.collision.scene import CoalScene
-from harness.planning.diagnosis.explanation import explained
+from harness.planning.diagnosis import explained
 from harness.planning.free_motion import find_motion
 from harness.planning.goals.goal_choice import choose_goals
 from harness.planning.goals.goals import GoalCandidates, find_goals

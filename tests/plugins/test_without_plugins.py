@@ -109,6 +109,18 @@ def test_a_robot_in_xacro_is_refused_by_the_core(core, tmp_path):
     assert "no plug-in renders xacro" in done.stdout + done.stderr
 
 
+def test_a_failed_motion_of_the_core_has_its_error_and_no_stages(core, tmp_path):
+    file = tmp_path / "far.scenario.yaml"
+    file.write_text(
+        "scenario: t\nrobot: open_manipulator_x\nsteps: [{move_to: {position: [3, 0, 0]}}]\n"
+    )
+    done = core("run", file, "--no-report", "--in-process")
+    assert done.returncode == 1
+    assert "NO_IK_SOLUTION" in done.stdout
+    assert "inverse kinematics:" not in done.stdout
+    assert "Traceback" not in done.stdout + done.stderr
+
+
 def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     file = tmp_path / "formula.scenario.yaml"
     file.write_text(

@@ -14,8 +14,8 @@ from harness.planning.collision.wording import (
     touches,
     way_out,
 )
-from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.verification.verify import FINAL_RESOLUTION
+from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest
 from harness.recording.explanation import NearestState, Stage
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import (

@@ -10,7 +10,6 @@ import numpy as np
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.types import FloatArray
 from harness.planning.collision.wording import angle, length_text, point
-from harness.planning.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import (
     KEEP_POINT,
@@ -20,6 +19,7 @@ from harness.planning.ik.nearest_pose import (
     target_of,
 )
 from harness.planning.ik.numeric import LinkGoal
+from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.recording.explanation import Stage
 

@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
+from typing import ClassVar
 
 import numpy as np
 
-from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.collision.scene import CoalScene
 from harness.planning.collision.wording import counted_noun, joint_value, touches
-from harness.planning.diagnosis.branch_stage import branches_finding
-from harness.planning.diagnosis.motion_stages import path_finding, start_finding, timing_finding
-from harness.planning.diagnosis.reach_stage import reach_finding
-from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
+from harness.planning.diagnosis import Explainer
 from harness.planning.goals.goal_study import broken_limits, limit_sentence, study_goal
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.diagnosis.branch_stage import branches_finding
+from harness.plugins.diagnosis.motion_stages import path_finding, start_finding, timing_finding
+from harness.plugins.diagnosis.reach_stage import reach_finding
+from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest
 from harness.ports.goals import AnyGoal, JointGoal
 from harness.ports.motion_planning import MotionRequest
 from harness.recording.explanation import Explanation, NearestState, Stage
-
-_NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE", "CRASH")
 
 
 def goal_findings(request: StageRequest) -> tuple[list[StageFinding], FloatArray | None]:
@@ -87,19 +85,27 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageF
     return [reach, StageFinding(stage, nearest, advice)]
 
 
-@contextmanager
-def explained(
-    request: MotionRequest, scene: CoalScene, kinematics: PinocchioKinematics
-) -> Generator[None]:
-    """Add an Explanation to the details of a failure."""
-    try:
-        yield
-    except PlanningFailed as failure:
-        has_stage = failure.code not in _NO_STAGE and request.options.is_explained
-        if has_stage and failure.details.find(Explanation) is None:
-            stages = _request(failure, scene, kinematics, request)
-            failure.details += Details.of(explanation_of(stages))
-        raise
+class Stages(Explainer):
+    """The result of each planning stage: reach, inverse kinematics, start, path and timing."""
+
+    name: ClassVar[str] = "stages"
+
+    def explain(
+        self,
+        failure: PlanningFailed,
+        request: MotionRequest,
+        scene: CoalScene,
+        kinematics: PinocchioKinematics,
+    ) -> Explanation:
+        """Explain a failed call; a choice of several goals is explained by what it raised."""
+        start = np.asarray(request.start, dtype=float)
+        space, checker = GroupSpace(kinematics.robot, request.group, start), None
+        with suppress(PlanningFailed):  # where no motion can begin from the start state
+            checker = MotionChecker(scene, space, space.part(start), request.options.padding)
+        goal = None if isinstance(request.goal, AnyGoal) else request.goal
+        return explanation_of(
+            StageRequest(failure, kinematics, scene, space, start, goal, request.options, checker)
+        )
 
 
 def explanation_of(request: StageRequest) -> Explanation:
@@ -118,26 +124,3 @@ def explanation_of(request: StageRequest) -> Explanation:
     nearest = next((finding.nearest for finding in findings if finding.nearest), None)
     advice = next((finding.advice for finding in findings if finding.advice), None)
     return Explanation(stages, nearest, advice)
-
-
-def _request(
-    failure: PlanningFailed,
-    scene: CoalScene,
-    kinematics: PinocchioKinematics,
-    request: MotionRequest,
-) -> StageRequest:
-    """The stages' input. A choice of several goals is explained by what it raised."""
-    start = np.asarray(request.start, dtype=float)
-    space, checker = GroupSpace(kinematics.robot, request.group, start), None
-    with suppress(PlanningFailed):  # where no motion can begin from the start state
-        checker = MotionChecker(scene, space, space.part(start), request.options.padding)
-    return StageRequest(
-        failure=failure,
-        kinematics=kinematics,
-        scene=scene,
-        space=space,
-        start=start,
-        goal=None if isinstance(request.goal, AnyGoal) else request.goal,
-        options=request.options,
-        checker=checker,
-    )

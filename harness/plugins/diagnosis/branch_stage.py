@@ -17,10 +17,10 @@ from harness.planning.collision.wording import (
     padding_advice,
     touches,
 )
-from harness.planning.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.ik.numeric import LinkGoal
+from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.ports.kinematics import IkSolver
 from harness.recording.explanation import FreeShift, NearestState, Stage
 
