@@ -50,7 +50,8 @@ BUILT_IN = {
     **dict.fromkeys(("robot", "robot_format", "robot_option", "world_format", "decomposer"), ""),
     "reporter": "harness.reporting.reporters",
     **dict.fromkeys(("observer", "suite_section", "suite_reporter", "result_format"), ""),
-    **dict.fromkeys(("grip", "adhesion", "tracker", "motion", "explainer", "camera_recorder"), ""),
+    **dict.fromkeys(("grip", "adhesion", "tracker", "motion", "camera_recorder"), ""),
+    **dict.fromkeys(("explainer", "path_finder"), ""),
 }
 """Every kind of plug-in, and the package of the core whose modules are built-in ones."""
 

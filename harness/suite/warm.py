@@ -33,7 +33,6 @@ RUN_MODULES = (
     "numpy.random",
     "pinocchio",
     "coal",
-    "ompl.base",
 )
 """What every run imports until its outcome is known."""
 

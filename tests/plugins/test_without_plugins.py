@@ -189,6 +189,14 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert done.returncode == 2
     assert "formula.scenario.yaml:4:11" in done.stdout + done.stderr
     assert "convex parts cannot be computed: no plug-in computes them" in done.stdout + done.stderr
+    file.write_text(
+        "scenario: t\nrobot: open_manipulator_x\nplanning: {planner_id: RRTstar}\n"
+        "steps: [{move_to: home}]\n"
+    )
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    assert "there is no path finder 'ompl'" in done.stdout + done.stderr
     part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
     assert part.returncode == 2
     assert "--shard" in part.stderr

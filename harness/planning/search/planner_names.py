@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from harness.core.registry import registry
 from harness.core.suggestion import did_you_mean
+from harness.ports.path_planning import PathPlanner
 
 DEFAULT_PLANNER = "auto"
 FAST_PLANNER = "BalancedConnect"
@@ -77,17 +79,27 @@ def check_planner(name: str, parameters: Mapping[str, float]) -> str:
         ValueError: The planner is unknown or refused, or does not take one; says what there is.
     """
     kind = resolve_planner_id(name)
-    if parameters:
-        for each in (FAST_PLANNER, PATIENT_PLANNER) if kind == DEFAULT_PLANNER else (kind,):
-            if each == FAST_PLANNER:
-                from harness.planning.search.balanced_connect import step_length
+    is_both = kind == DEFAULT_PLANNER and parameters
+    for each in (FAST_PLANNER, PATIENT_PLANNER) if is_both else (kind,):
+        if each == FAST_PLANNER and parameters:
+            from harness.planning.search.balanced_connect import step_length
 
-                step_length(kind, parameters)
-            else:
-                from harness.planning.search.planner_parameters import check_parameters
-
-                check_parameters(each, parameters)
+            step_length(kind, parameters)
+        elif each not in (FAST_PLANNER, DEFAULT_PLANNER):
+            ompl_planners().check(each, parameters)
     return kind
+
+
+def ompl_planners() -> type[PathPlanner]:
+    """The planners of OMPL, which are a plug-in.
+
+    Raises:
+        ValueError: There is none.
+    """
+    try:
+        return registry("path_finder").find("ompl")
+    except LookupError as error:
+        raise ValueError(error.args[0]) from None
 
 
 def _bare(name: str) -> str:

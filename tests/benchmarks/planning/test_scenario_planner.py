@@ -22,10 +22,10 @@ from harness.core.errors import PlanningFailed
 from harness.planning.efforts import InverseDynamics
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.motion_planner import VerifiedPlanner
-from harness.planning.search.ompl_planner import make_problem
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.verification.verify import VERIFIED_RESOLUTION
+from harness.plugins.ompl_planners.sampling import make_problem
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
+from harness.core.registry import registry
 from harness.planning.search.planner_names import (
     DEFAULT_PLANNER,
     FAST_PLANNER,
     PATIENT_PLANNER,
     check_planner,
+    ompl_planners,
     planner_names,
     resolve_planner_id,
 )
@@ -39,6 +41,8 @@ class Ompl(PathPlanner):
     def find_path(self, request: PathRequest) -> PathResult:
         """Search with one planner; `auto` is the fast planner, then the patient one."""
         name = resolve_planner_id(request.planner_id)
+        if not registry("path_finder"):
+            name = FAST_PLANNER  # the core alone
         if name != DEFAULT_PLANNER:
             return _find_path_with(name, request)
         budget = max(1, int(FAST_SHARE * request.max_state_checks))
@@ -58,8 +62,9 @@ class Ompl(PathPlanner):
 
 
 def _find_path_with(name: str, request: PathRequest) -> PathResult:
+    request = replace(request, planner_id=name)
     if name == FAST_PLANNER:
-        from harness.planning.search.balanced_connect import search_connect as find
-    else:
-        from harness.planning.search.ompl_planner import search_ompl as find
-    return replace(find(replace(request, planner_id=name)), planner_id=name)
+        from harness.planning.search.balanced_connect import search_connect
+
+        return replace(search_connect(request), planner_id=name)
+    return replace(ompl_planners()().find_path(request), planner_id=name)

@@ -14,8 +14,8 @@ import ompl.geometric as og
 import ompl.util as ou
 
 from harness.core.types import FloatArray
-from harness.planning.search.planner_parameters import parameter_names, set_parameters
-from harness.planning.search.roadmap import find_in_roadmap
+from harness.plugins.ompl_planners.parameters import parameter_names, set_parameters
+from harness.plugins.ompl_planners.roadmap import find_in_roadmap
 from harness.ports.kinematics import JointSpace
 from harness.ports.path_planning import PathRequest, PathResult
 

@@ -3,8 +3,8 @@
 import ompl.geometric
 import pytest
 
-from harness.planning.search.ompl_planner import make_problem
-from harness.planning.search.planner_parameters import parameter_names, set_parameters
+from harness.plugins.ompl_planners.parameters import parameter_names, set_parameters
+from harness.plugins.ompl_planners.sampling import make_problem
 from tests.planning.planner_trial import Trial, signature
 
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from harness.planning.search.ompl_planner import IMPROVING_SHARE
+from harness.plugins.ompl_planners.sampling import IMPROVING_SHARE
 from tests.planning.planner_trial import RESOLUTION, Trial
 
 

@@ -1,0 +1,1 @@
+"""What finds paths by the name of a planner."""
