@@ -1,1 +1,1 @@
-"""Reads a file as a checked scenario: includes, parameters, short forms, overrides, mistakes."""
+"""Reads a file as a checked scenario: parameters, short forms, overrides, mistakes."""

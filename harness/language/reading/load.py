@@ -18,7 +18,7 @@ from harness.core.suggestion import did_you_mean
 from harness.language.base import SpecModel
 from harness.language.files.source import Loc, Located, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
-from harness.language.reading.includes import with_includes
+from harness.language.reading.expansion import with_expansions
 from harness.language.reading.overrides import apply_overrides, from_options
 from harness.language.reading.params import substitute
 from harness.language.reading.partial import PartialReader, Prerequisite
@@ -122,7 +122,7 @@ def read_scenario(
     root = apply_overrides(root, [*of_file.values(), *from_options(options, problems)], problems)
     check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
     notes = unread_parameters(root)
-    written = substitute(with_includes(root, path, problems), problems)
+    written = substitute(with_expansions(root, path, problems), problems)
     try:
         model, lines = _model(written, Scenario, problems, notes)
     except _BrokenError as error:
@@ -152,7 +152,7 @@ def _unknown_expectation(scenario: Scenario, lines: SourceMap) -> Iterator[Probl
 def _problems_of(root: Located, path: Path) -> list[Problem]:
     """The mistakes of a scenario's values."""
     problems: list[Problem] = []
-    written = substitute(with_includes(root, path, problems), problems)
+    written = substitute(with_expansions(root, path, problems), problems)
     try:
         _model(written, Scenario, problems)
     except SpecError as error:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from harness.core.errors import Problem, SpecError
 from harness.core.limits import YAML_VALUES
@@ -17,6 +17,7 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Place, Source, walk
 from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.language import PLACEHOLDER_VERB
+from harness.language.reading.expansion import Expansion
 from harness.language.reading.params import PARAMS, escaped, filled, mapped
 from harness.language.reading.paths import paths_from
 
@@ -35,33 +36,35 @@ class _Context(NamedTuple):
 
     @property
     def root(self) -> Path:
-        """The folder that included files stand in."""
-        return project_folder(self.around[0].parent)
+        """The nearest folder around the file that marks a project, or the file's own."""
+        folder = self.around[0].parent.resolve()
+        marked = (
+            each
+            for each in (folder, *folder.parents)
+            if any((each / mark).exists() for mark in PROJECT_MARKS)
+        )
+        return next(marked, folder)
 
 
-def project_folder(folder: Path) -> Path:
-    """The nearest folder around that marks a project, or the folder itself."""
-    resolved = folder.resolve()
-    around = (resolved, *resolved.parents)
-    return next(
-        (each for each in around if any((each / mark).exists() for mark in PROJECT_MARKS)), resolved
-    )
+class Include(Expansion):
+    """The steps of included files in place of every `include`."""
 
+    name: ClassVar[str] = INCLUDE
 
-def with_includes(root: Located, path: Path, problems: list[Problem]) -> Located:
-    """A file's values with the steps of included files in place of every `include`.
+    def expand(self, root: Located, path: Path, problems: list[Problem]) -> Located:
+        """Read the files that are included.
 
-    Raises:
-        SpecError: The files hold more values than a file may have.
-    """
-    steps = root.mapping().get("steps")
-    if steps is None or not any(INCLUDE in item.mapping() for _, item in walk(steps.value)):
-        return root
-    params = root.mapping().get(PARAMS)
-    context = _Context(path.parent, params.value.mapping() if params else {}, (path.resolve(),))
-    expander = _Expander(problems)
-    expanded = Entry(steps.key, expander.expand(steps.value, context))
-    return Located({**root.mapping(), "steps": expanded}, root.place)
+        Raises:
+            SpecError: The files hold more values than a file may have.
+        """
+        steps = root.mapping().get("steps")
+        if steps is None or not any(INCLUDE in item.mapping() for _, item in walk(steps.value)):
+            return root
+        params = root.mapping().get(PARAMS)
+        context = _Context(path.parent, params.value.mapping() if params else {}, (path.resolve(),))
+        expander = _Expander(problems)
+        expanded = Entry(steps.key, expander.expand(steps.value, context))
+        return Located({**root.mapping(), "steps": expanded}, root.place)
 
 
 class _Expander:

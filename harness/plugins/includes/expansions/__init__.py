@@ -1,0 +1,1 @@
+"""What the step `include` is replaced by."""
