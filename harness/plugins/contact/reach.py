@@ -2,88 +2,137 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from harness.core.kinematics import LinkPoses
-from harness.core.pose_arrays import quats_from_rotations, rotation_vector
-from harness.core.types import FloatArray
+from harness.cell.scope import At
+from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import RobotDescription
 
+if TYPE_CHECKING:
+    from harness.simulation.servo import FeedForward
+
 SAMPLES = 32  # postures that are tried besides the named ones
-STEP = 1e-6  # of a joint, for the derivative of a link's pose [rad or m]
 REST = 0.05
 """Share of a unit motion along an axis, with 1 rad counting as 1 m, that the joints may lack."""
+
+SINGULAR, NEARLY_SINGULAR = 1e-3, 0.05
+"""Shares of the largest singular value of a Jacobian. Where a motion has less than the second, an
+arm is stretched or folded, and its links bear a force that its torques do not control."""
+
+
+class Posture(NamedTuple):
+    """A link in one posture.
+
+    Attributes:
+        jacobian: How the joints move the link, in the axes of a frame, shape (6, joints).
+        rates: Acceleration along or about each axis by a unit of force or torque, shape (6,).
+    """
+
+    jacobian: FloatArray
+    rates: FloatArray
+
+    def moves(self, axes: FloatArray, least: float) -> bool:
+        """Whether the joints move the link along each of some axes alone, shape (k, 6)."""
+        moved = self.jacobian @ (np.linalg.pinv(self.jacobian, least) @ axes.T)
+        return bool((np.linalg.norm(moved - axes.T, axis=0) < REST).all())
 
 
 class Postures:
     """An arm in its named states, at its start, and in positions within its limits."""
 
-    def __init__(self, robot: RobotDescription, group: str, link: str, frame: str) -> None:
-        """Compute the Jacobians of a link.
+    def __init__(
+        self,
+        robot: RobotDescription,
+        group: str,
+        link: str,
+        frame: FloatArray | str,
+        at: FloatArray | None = None,
+    ) -> None:
+        """Compute how the joints move a link.
 
         Args:
             robot: The description of the robot.
             group: The planning group that moves.
             link: The link that yields.
-            frame: The link in whose axes motions are given; `world` for those of the world.
+            frame: R_world_frame of the axes, or the link in whose axes motions are given.
+            at: The only posture, positions of every movable joint.
         """
         indices = list(robot.group_indices(group))
         joints = [robot.movable_joints[index] for index in indices]
-        self.joint_names = tuple(joint.name for joint in joints)
+        self._joint_names = tuple(joint.name for joint in joints)
         self._limits = np.array([joint.effort for joint in joints])
-        starts = [robot.start_positions()]
-        starts += [robot.start_positions(state.positions) for state in robot.named_states]
+        starts = [robot.start_positions()] if at is None else [at]
         generator = np.random.default_rng(0)
-        for _ in range(SAMPLES):
-            drawn = robot.start_positions()
-            for index, joint in zip(indices, joints, strict=True):
-                drawn[index] = generator.uniform(max(joint.lower, -3), min(joint.upper, 3))
-            starts.append(robot.with_mimics(drawn))
-        self._jacobians = [_jacobian(robot, indices, link, frame, each) for each in starts]
+        if at is None:
+            starts += [robot.start_positions(state.positions) for state in robot.named_states]
+            for _ in range(SAMPLES):
+                drawn = robot.start_positions()
+                for index, joint in zip(indices, joints, strict=True):
+                    drawn[index] = generator.uniform(max(joint.lower, -3), min(joint.upper, 3))
+                starts.append(robot.with_mimics(drawn))
+        actuated = [joint.name for joint in robot.movable_joints if joint.mimic is None]
+        arm = [actuated.index(name) for name in self._joint_names]
+        dynamics = _dynamics(robot)
+        self._all = [_posture(dynamics, arm, link, frame, each) for each in starts]
 
     def can_yield(self, axis: int) -> bool:
         """Whether the link can move along or about one axis alone in some posture."""
-        requested = np.eye(6)[axis]
-        for jacobian in self._jacobians:
-            moved = jacobian @ (np.linalg.pinv(jacobian, 1e-3) @ requested)
-            if np.linalg.norm(moved - requested) < REST:
-                return True
-        return False
+        return any(each.moves(np.eye(6)[axis : axis + 1], SINGULAR) for each in self._all)
 
-    def least_load(self, wrench: FloatArray) -> tuple[float, str]:
-        """The posture in which a wrench takes the smallest share of an effort limit.
+    def overload(self, wrench: FloatArray) -> str:
+        """What a wrench takes in the posture that bears it best; empty within the effort limits.
 
         Args:
             wrench: Force and torque along and about the axes, shape (6,) [N, N m].
-
-        Returns:
-            The share of the joint that is loaded most there, and the joint's name.
         """
-        loads = [np.abs(jacobian.T @ wrench) / self._limits for jacobian in self._jacobians]
+        loads = [
+            np.abs(each.jacobian.T @ wrench) / self._limits for each in self._firm(wrench != 0)
+        ]
         least = min(loads, key=lambda each: float(each.max()))
-        return float(least.max()), self.joint_names[int(least.argmax())]
+        joint = self._joint_names[int(least.argmax())]
+        times = f"takes {least.max():.3g} times the effort limit of a joint, '{joint}'"
+        return times if least.max() > 1 else ""
+
+    def least_rate(self, axis: int) -> float:
+        """The smallest acceleration along or about an axis by a unit of force or torque."""
+        return min(each.rates[axis] for each in self._firm(np.arange(6) == axis))
+
+    def _firm(self, axes: BoolArray) -> list[Posture]:
+        """The postures in which the joints control axes, shape (6,); all where there is none."""
+        chosen = np.eye(6)[axes]
+        return [each for each in self._all if each.moves(chosen, NEARLY_SINGULAR)] or self._all
 
 
-def _jacobian(
-    robot: RobotDescription, indices: list[int], link: str, frame: str, positions: FloatArray
-) -> FloatArray:
-    """The motion of a link by each joint, in the axes of a frame, shape (6, joints)."""
-    rows = np.stack(list(_moved(robot, indices, positions)))
-    poses = LinkPoses(robot.joints, rows, [link] if frame == "world" else [link, frame])
-    turn, place = poses.rotations[link], poses.translations[link]
-    back = np.eye(3) if frame == "world" else poses.rotations[frame][0].T
-    turned = rotation_vector(quats_from_rotations(turn[1:] @ turn[0].T))
-    return np.vstack([back @ (place[1:] - place[0]).T, back @ turned.T]) / STEP
+def postures_of(at: At, group: str | None, link: str | None, frame: str) -> Postures | None:
+    """The postures of what a step moves, in the axes of a frame; None where a name is wrong."""
+    robot, stands = at.scope.description, at.scope.objects.get(frame)
+    group, link = group or robot.default_group, link or robot.tcp_link
+    if group not in robot.groups or link not in robot.link_names:
+        return None
+    rotation = np.eye(3) if stands is None else stands.pose.rotation
+    return Postures(robot, group, link, frame if frame in robot.link_names else rotation)
 
 
-def _moved(
-    robot: RobotDescription, indices: list[int], positions: FloatArray
-) -> Iterator[FloatArray]:
-    """Positions, then the same with each of the joints moved by a step."""
-    yield positions
-    for index in indices:
-        moved = positions.copy()
-        moved[index] += STEP
-        yield robot.with_mimics(moved)
+@lru_cache(maxsize=4)
+def _dynamics(robot: RobotDescription) -> FeedForward:
+    from harness.simulation.servo import FeedForward, design_servos  # loads MuJoCo
+
+    return FeedForward(robot, design_servos(robot, 1e-3), (0.0, 0.0, 0.0))
+
+
+def _posture(
+    dynamics: FeedForward,
+    arm: list[int],
+    link: str,
+    frame: FloatArray | str,
+    positions: FloatArray,
+) -> Posture:
+    """A link in a posture, by the joints of an arm."""
+    turn = dynamics.link_motion(frame, positions).pose.rotation if isinstance(frame, str) else frame
+    jacobian = np.kron(np.eye(2), turn.T) @ dynamics.link_motion(link, positions).jacobian[:, arm]
+    inertia = dynamics.inertia(positions)[np.ix_(arm, arm)]
+    rates = np.einsum("ij,ji->i", jacobian, np.linalg.solve(inertia, jacobian.T))
+    return Posture(jacobian, rates)

@@ -6,6 +6,7 @@ import pytest
 import harness
 from harness.core.kinematics import LinkPoses
 from harness.plugins.contact.steps.comply import Yielded
+from harness.session.check import check_file
 from tests.simulation.test_pushing import GANTRY
 
 SCENARIO = """
@@ -194,9 +195,67 @@ def test_a_compliance_that_no_torque_can_give_is_a_located_error(tmp_path, robot
         assert each in str(result)
 
 
-def test_a_stiffness_beyond_the_cycle_of_the_controller_fails_with_the_most_there_is(tmp_path):
-    steps = START + "\n  - comply: {stiffness: {z: 5000 kN/m}, during: [{wait: 0.1}]}"
-    result = run_of(tmp_path, steps)
-    assert "CONTROL_FAILED: the stiffness along z is 5e+06 N/m, and torques in a cycle" in str(
-        result
+UR5E = "ur5e"
+
+
+@pytest.mark.parametrize(
+    ("robot", "step", "said"),
+    [
+        (UR5E, "comply: {stiffness: {z: 100 MN/m}", "the stiffness along z is 1e+08 N/m"),
+        (UR5E, "comply: {stiffness: {ry: 1 MN*m/rad}", "the stiffness about y is 1e+06 N m/rad"),
+        (UR5E, "comply: {wrench: {x: 0}, damping: {x: 1e5}", "the damping along x is 1e+05 N s/m"),
+        (UR5E, "comply: {wrench: {z: -20 kN}", "times the effort limit of a joint"),
+        (UR5E, "comply: {wrench: {y: 3 kN}", "times the effort limit of a joint"),
+        (UR5E, "comply: {wrench: {rx: 900}", "times the effort limit of a joint"),
+        (GANTRY_ROBOT, "comply: {stiffness: {z: 5000 kN/m}", "along z is 5e+06 N/m, and torques"),
+        (GANTRY_ROBOT, "comply: {wrench: {z: 1}, damping: {rx: 5}", "cannot move 'tip' about x"),
+    ],
+)
+def test_what_no_torque_gives_in_any_posture_is_located_though_singular_ones_bear_all(
+    tmp_path, robot, step, said
+):
+    """A stretched arm bears any force along itself; its torques do not control it there."""
+    result = run_of(tmp_path, f"  - {step}, during: [{{wait: 0.1}}]}}", robot, "[0.5, 0.5, 0.05]")
+    assert result.case.outcome == "invalid", str(result)
+    assert "comply.scenario.yaml:8:" in str(result)
+    assert said in str(result)
+
+
+def test_a_guarded_move_to_a_force_that_no_posture_can_press_is_a_located_error(tmp_path):
+    step = "  - move_until: {direction: {xyz: [0, 0, -1]}, max_distance: 5 cm, force: %s}"
+    for robot, force in ((UR5E, "20 kN"), (OMX, "400 N"), (GANTRY_ROBOT, "2 kN")):
+        result = run_of(tmp_path, step % force, robot, "[0.5, 0.5, 0.05]")
+        assert "comply.scenario.yaml:8:75: in every posture that was tried, the" in str(result)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("stiffness: {z: 500 kN/m}", "here the stiffness along z is 5e+05 N/m, and torques in a"),
+        ("wrench: {z: -300 N}", "here the wrench takes 1.07 times the effort limit of a joint"),
+    ],
+)
+def test_what_no_torque_gives_where_the_arm_is_fails_and_check_predicts_it(tmp_path, words, said):
+    steps = (
+        "  - move_to: {pose: {xyz: [0.5, 0.1, 0.3], rpy: [180 deg, 0, 0]}}\n"
+        f"  - comply: {{{words}, during: [{{wait: 0.1}}]}}"
     )
+    result = run_of(tmp_path, steps, UR5E, "[0.5, 0.5, 0.05]")
+    assert f"CONTROL_FAILED: {said}" in str(result)
+    predicted = check_file(tmp_path / "comply.scenario.yaml").predicted
+    assert [(each.line, said in each.message) for each in predicted] == [(9, True)]
+
+
+def test_a_force_that_an_arm_has_is_pressed_though_no_cycle_damps_it_to_2_cm_s(tmp_path):
+    """100 N over 2 cm/s is more damping than 1 ms holds for 4 kg: the arm comes faster."""
+    steps = """
+  - move_to: {pose: {xyz: [0.5, 0.1, 0.12], rpy: [180 deg, 0, 0]}}
+  - allow_collisions:
+      pairs: [[robot, block]]
+      during:
+        - comply: {wrench: {z: -100 N}, during: [{wait: 1.5, id: press}]}
+"""
+    result = run_of(tmp_path, steps, UR5E, "[0.5, 0.1, 0.05]")
+    assert result, str(result)
+    end = result.step("press").end_index
+    assert pressed_on(result.run, slice(end - 200, end)) == pytest.approx(100, rel=0.02)

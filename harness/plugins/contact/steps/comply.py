@@ -14,14 +14,19 @@ from harness.cell.goals import group_of
 from harness.cell.scope import At
 from harness.cell.step import Step
 from harness.core.details import Detail
+from harness.core.errors import StepFailed
 from harness.core.types import FloatArray, Floats
 from harness.language.base import Name
 from harness.language.files.source import Loc
 from harness.language.step import AnyStep, Block
 from harness.plugins.contact.axes import AXES, WORDS, DampingAxes, StiffnessAxes, WrenchAxes
-from harness.plugins.contact.compliance import CartesianCompliance, Compliance
+from harness.plugins.contact.compliance import CYCLE, FASTEST, CartesianCompliance, Compliance
 from harness.plugins.contact.guarded import STOPS_AT_CONTACT
-from harness.plugins.contact.reach import Postures
+from harness.plugins.contact.reach import Postures, postures_of
+from harness.robot.description import RobotDescription
+
+Beyond = tuple[tuple[str, ...], str, str]
+"""The keys of what no torque gives, why none does, and what to do about it."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +50,12 @@ class Comply(Step):
     The joints are controlled by their torques, every millisecond and within their effort limits.
     An axis with a `stiffness` presses with stiffness times the distance from where the link is
     commanded to be; an axis with a `wrench` presses with that force or torque, ignores the
-    commanded path along it, and moves at 2 cm/s or 0.2 rad/s while it meets nothing; the other axes
-    hold with a natural frequency of 40 rad/s. The weight of the robot and of what it holds is
-    compensated. Damping is critical for the inertia at the beginning unless `damping` is given.
-    While the arm yields, a joint that strays from its set point ends no motion. Afterwards the arm
-    holds where it is. What it may touch has to be allowed, by `allow_collisions` around it.
+    commanded path along it, and moves at 2 cm/s or 0.2 rad/s while it meets nothing, faster where a
+    cycle of 1 ms cannot damp it to that; the other axes hold with a natural frequency of 40 rad/s.
+    The weight of the robot and of what it holds is compensated. Damping is critical for the inertia
+    at the beginning unless `damping` is given. While the arm yields, a joint that strays from its
+    set point ends no motion. Afterwards the arm holds where it is. What it may touch has to be
+    allowed, by `allow_collisions` around it.
     """
 
     verb: ClassVar[str] = "comply"
@@ -111,48 +117,60 @@ class Comply(Step):
         scope.check_group(self.group, at.key("group"))
         scope.check_link(self.link, at.key("link"))
         scope.check_frame(self.frame, at.key("frame"))
-        robot, group = scope.description, self.group or scope.description.default_group
-        link = self.link or robot.tcp_link
-        if group not in robot.groups or link not in robot.link_names:
+        robot = scope.description
+        postures = postures_of(at, self.group, self.link, self.frame)
+        if postures is None:
             return
-        frame = self.frame if self.frame in robot.link_names else "world"
-        postures = Postures(robot, group, link, frame)
-        self._check_axes(at, postures, link)
-        self._check_efforts(at, postures)
+        link = self.link or robot.tcp_link
+        for keys, message, hint in [*self._rigid(postures, robot, link)] or self._beyond(postures):
+            said = f"in every posture that was tried, {message}"
+            scope.problems.add(at.key(*keys), said, hint, needs=("robot",))
 
-    def _check_axes(self, at: At, postures: Postures, link: str) -> None:
-        """Report axes along which no posture lets the link yield."""
-        given = (("stiffness", self.stiffness), ("wrench", self.wrench))
+    def _rigid(self, postures: Postures, robot: RobotDescription, link: str) -> Iterator[Beyond]:
+        """Axes along which no posture lets the link yield."""
+        given = (("stiffness", self.stiffness), ("damping", self.damping), ("wrench", self.wrench))
         for key, axes in given:
             for name in () if axes is None else axes.named():
                 number = AXES.index(name)
                 if not postures.can_yield(number):
-                    at.scope.problems.add(
-                        at.key(key, name),
-                        f"the joints of {at.scope.description.name} cannot move '{link}'"
-                        f" {WORDS[number]} of '{self.frame}' alone, so that no torque of theirs"
-                        " makes it yield there",
+                    yield (
+                        (key, name),
+                        f"the joints of {robot.name} cannot move '{link}' {WORDS[number]} of"
+                        f" '{self.frame}' alone, so that no torque of theirs makes it yield there",
                         "leave out the axis, or choose another frame",
-                        needs=("robot",),
                     )
 
-    def _check_efforts(self, at: At, postures: Postures) -> None:
-        """Report a wrench that exceeds the joints' effort limits in every posture."""
-        if self.wrench is None:
-            return
-        share, joint = postures.least_load(np.nan_to_num(self.wrench.values()))
-        if share > 1:
-            at.scope.problems.add(
-                at.key("wrench"),
-                f"in every posture the wrench takes {share:.3g} times the effort limit of a joint,"
-                f" such as '{joint}'",
-                "state less, or use a stronger arm",
-                needs=("robot",),
-            )
+    def _beyond(self, postures: Postures) -> Iterator[Beyond]:
+        """What the joints' torques cannot give in any of some postures."""
+        wrench = np.zeros(6) if self.wrench is None else np.nan_to_num(self.wrench.values())
+        if said := postures.overload(wrench):
+            yield ("wrench",), f"the wrench {said}", "state less, or use a stronger arm"
+        laws = (
+            ("stiffness", self.stiffness, FASTEST**2, ("N/m", "N m/rad")),
+            ("damping", self.damping, 1.0 / CYCLE, ("N s/m", "N m s/rad")),
+        )
+        for key, axes, most, units in laws:
+            for name in () if axes is None else axes.named():
+                number, stated = AXES.index(name), getattr(axes, name)
+                rate = postures.least_rate(number)
+                if stated * rate > most:
+                    said = f"the {key} {WORDS[number]} is {stated:.3g} {units[number > 2]}, and"
+                    cycle = f"torques in a cycle of {1e3 * CYCLE:g} ms hold {most / rate:.3g}"
+                    yield (key, name), f"{said} {cycle} at most", "state less"
 
     def execute(self, cell: Cell) -> None:
-        """Control the arm by torques, run the nested steps, and hold the arm where it is."""
-        controller = CartesianCompliance(self._law(cell))
+        """Control the arm by torques, run the nested steps, and hold the arm where it is.
+
+        Raises:
+            StepFailed: CONTROL_FAILED; no torques give the compliance where the arm is.
+        """
+        law = self._law(cell)
+        frame = law.frame_link if law.rotation is None else law.rotation
+        at = cell.simulator.joint_positions()
+        here = Postures(cell.description, group_of(cell, self.group), law.link, frame, at)
+        for _, message, hint in self._beyond(here):
+            raise StepFailed("CONTROL_FAILED", f"here {message}: {hint}")
+        controller = CartesianCompliance(law)
         cell.simulator.use_controller(controller)
         try:
             cell.run_children()
@@ -165,7 +183,6 @@ class Comply(Step):
         """The compliance of the link with what is held now."""
         robot = cell.description
         link = self.link or robot.tcp_link
-        group_of(cell, self.group)
         none = np.full(6, np.nan)
         is_link = self.frame in robot.link_names and self.frame != "world"
         return Compliance(

@@ -20,6 +20,7 @@ from harness.core.types import FloatArray
 from harness.language.base import Force, LinearVelocity, Name, PositiveLength, Torque
 from harness.language.poses import Direction
 from harness.plugins.contact.guarded import LOOK, STOPS_AT_CONTACT, follow_until
+from harness.plugins.contact.reach import postures_of
 from harness.plugins.contact.sensors import check_sensor, sensor_of
 from harness.ports.motion_planning import MotionRequest
 from harness.ports.motions import CartesianLimits, RelativeMotion
@@ -110,12 +111,23 @@ class MoveUntil(Step):
             )
         if self.torque is not None or self.sensor is not None:
             check_sensor(self.sensor, at)
+        self._check_force(at)
         if self.contact is not None and self.sensor is not None:
             at.scope.problems.add(
                 at.key("sensor"),
                 "`contact` reads no sensor",
                 "write `force`, or leave out `sensor`",
             )
+
+    def _check_force(self, at: At) -> None:
+        """Report a force with which no posture of the arm can press."""
+        postures = postures_of(at, self.group, self.link, self.direction.frame)
+        push = np.array([*self.direction.xyz, 0.0, 0.0, 0.0]) * (self.force or 0.0)
+        said = postures and postures.overload(push / np.linalg.norm(self.direction.xyz))
+        if said:
+            message = f"in every posture that was tried, the force {said}"
+            hint = "state less, or use a stronger arm"
+            at.scope.problems.add(at.key("force"), message, hint, needs=("robot",))
 
     def execute(self, cell: Cell) -> None:
         """Follow the line until the force is met, stop, and report where and at what force."""
