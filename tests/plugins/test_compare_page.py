@@ -60,11 +60,55 @@ def test_the_page_lists_what_differs_and_where_the_runs_part(page, folders):
     assert "joint1: 0.6" in text
     assert "joint1: 1.2" in text
     assert "Where they part" in text
-    page.click("#panel-differences .link")
+    page.click("section:has(h3:text-is('Where they part')) .link >> nth=0")
     first, second = (read_run(folder).run.signals for folder in folders)
     time = float(page.get_attribute("#track", "aria-valuenow"))
     row = round(time / (first.times[1] - first.times[0]))
     assert (first.joint_commands[: row + 1] != second.joint_commands[: row + 1]).any()
+
+
+STRICTER = ONE.replace("10 s", "1 s")
+FALLS = """\
+scenario: a ball falls
+robot: open_manipulator_x
+objects: [{name: ball, sphere: {radius: 2 cm}, pose: {xyz: [0.4, 0, 20 cm]}, mass: 0.1}]
+steps: [{wait: 0.2}]
+expect: [{duration: {at_most: 1 s}}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "outcome", "sentences"),
+    [
+        (ONE, STRICTER, "failed", [
+            "B misses “duration is at most 10.0 → 1.0 s”, which A meets.",
+            "In the file: duration: {at_most: 1 s} in place of duration: {at_most: 10 s}.",
+            "The recorded motion is the same.",
+        ]),
+        (FALLS, FALLS.replace("20 cm", "35 cm"), "passed", [
+            "Every expectation has the same outcome in both runs: both passed.",
+            "in place of",
+            "ball is elsewhere, by up to 150 mm; the arm moves the same throughout.",
+        ]),
+    ],
+)  # fmt: skip
+def test_the_headline_says_what_turned_its_cause_and_what_moved(
+    visit, recorded_run, tmp_path, one, other, outcome, sentences
+):
+    runs = [recorded_run(one) / "run", recorded_run(other, outcome=outcome) / "run"]
+    assert main(["compare", *map(str, runs), "--page", str(tmp_path / "compare.html")]) == 1
+    page = visit(tmp_path / "compare.html").page
+    found = page.locator("#headline dd").all_inner_texts()
+    assert all(part in text for part, text in zip(sentences, found, strict=True)), found
+    turned = page.locator(".verdict-pairs .turned")
+    assert turned.count() == (outcome == "failed")
+    if turned.count():
+        assert turned.locator("td .sign").evaluate_all(
+            "all => all.map((each) => each.ariaLabel)"
+        ) == ["passed", "failed"]
+        assert [*turned.locator("td").all_inner_texts()][2].endswith("9.00 s")
+    else:
+        assert page.input_value(".plot select >> nth=0") == "apart"
 
 
 def test_steps_are_aligned_and_a_new_one_stands_alone(page):
@@ -72,23 +116,26 @@ def test_steps_are_aligned_and_a_new_one_stands_alone(page):
     assert steps.count() == 4
     assert steps.nth(0).inner_text().startswith("turn")
     assert "only in B" in steps.nth(1).inner_text()
-    assert [each.get_attribute("class") for each in steps.all()][2:] == ["step good", "step open"]
+    assert [each.get_attribute("class") for each in steps.all()][2:] == [
+        "step same",
+        "step differs",
+    ]
 
 
 def test_both_robots_are_drawn_over_and_next_to_each_other(visit, file):
     page = visit(file, width=1440, height=900, has_scene=True).page
     page.click("#steps .step >> nth=2")
     both = picture(page)
-    page.click("#switches button:text-is('B')")
+    page.click("#switches button >> nth=1")
     alone = picture(page)
     assert abs(both - alone).max() > 20, "the second robot is gone"
-    page.click("#switches button:text-is('B')")
-    page.click("#switches button:text-is('next to each other')")
+    page.click("#switches button >> nth=1")
+    page.click("#switches button:text-is('side by side')")
     halves = picture(page)
     assert abs(halves - both).mean() > 2
     assert halves[:, :32].std() > 5
     assert halves[:, 32:].std() > 5
-    page.click("#switches button:text-is('next to each other')")
+    page.click("#switches button:text-is('side by side')")
     assert abs(picture(page) - both).max() == 0
 
 
@@ -110,11 +157,14 @@ def test_aligned_steps_begin_at_the_same_place_of_the_clock(page):
 
 @pytest.mark.nightly
 def test_plots_show_both_runs(page):
-    assert page.locator(".legend button").count() == 4, "one entry for both lines of a joint"
+    page.select_option(".plot select >> nth=0", "position")
+    names = page.locator(".legend button").all_inner_texts()
+    assert names.count("joint1") == 1, "one entry for both lines of a joint"
+    assert "joint2" not in names, "lines that are over each other are left out"
     canvas = page.locator(".plot canvas").first
     with page.expect_download() as saved:
         page.click(".plot button:text-is('SVG') >> nth=0")
-    assert Path(saved.value.path()).read_text().count('stroke-dasharray="5 3"') == 4
+    assert Path(saved.value.path()).read_text().count('stroke-dasharray="5 3"') == 1
     before = canvas.screenshot()
     page.click(".legend button >> nth=0")
     assert canvas.screenshot() != before
@@ -205,7 +255,7 @@ def test_folders_are_named_by_what_differs(one, two, names):
 def test_a_step_that_lasted_longer_differs(page):
     signs = page.locator("#steps .step").evaluate_all(
         "rows => rows.map((row) => [...row.querySelectorAll('.took')].map((each) => each.innerText)"
-        ".concat(row.querySelector('.sign').ariaLabel))"
+        ".concat(row.querySelector('.equality').ariaLabel))"
     )
     assert any(one != two for one, two, _ in signs)
     assert all(sign == "differs" for one, two, sign in signs if one != two)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from itertools import zip_longest
@@ -24,6 +24,8 @@ from harness.recording.verdict import Verdict
 DRAWN = re.compile(r"-?\d+\.\d{7,}")  # as `randomize` draws them, not as people write them
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 EVERY_DIGIT = 17  # of a double
+
+VerdictPair = tuple[str, Verdict | None, Verdict | None]
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,7 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
         *_words("seed", "", str(one.seed), str(two.seed)),
         *_versions(one.versions, two.versions),
         *_steps(pairs, names, one.robot.joint_units.by_joint),
-        *_verdicts(*map(_by_name, (first.verdicts, second.verdicts), names)),
+        *_verdicts(verdict_pairs(first, second)),
         *_findings(one, two),
     ]
     warnings = (
@@ -181,21 +183,26 @@ def _resampled(trajectory: JointTrajectory) -> FloatArray:
     return resampled
 
 
-def _verdicts(ours: Mapping[str, Verdict], theirs: Mapping[str, Verdict]) -> list[Change]:
-    changes: list[Change] = []
+def verdict_pairs(first: StoredRun, second: StoredRun) -> list[VerdictPair]:
+    """The expectations of both runs by text and step; None where a run has no verdict on it."""
+    names = names_of(aligned_steps(first.run, second.run))
+    ours, theirs = map(_by_name, (first.verdicts, second.verdicts), names)
     twins = _twins([each for each in ours if each not in theirs],
                    [each for each in theirs if each not in ours])  # fmt: skip
-    for name in dict.fromkeys([*ours, *theirs]):
-        if name in twins.values():
-            continue
-        a, b = ours.get(name), theirs.get(twins.get(name, name))
-        if name in twins:
-            changes.append(Change("verdict", _both(name, twins[name]), _judged(a), _judged(b)))
-        elif a is None or b is None or a.status != b.status:
-            changes += _words("verdict", name, _judged(a), _judged(b))
+    pairs = {name: (ours.get(name), theirs.get(twins.get(name, name))) for name in [*ours, *theirs]}
+    return [
+        (_both(name, twins[name]) if name in twins else name, *pair)
+        for name, pair in pairs.items()
+        if name not in twins.values()
+    ]
+
+
+def _verdicts(pairs: Sequence[VerdictPair]) -> Iterator[Change]:
+    for name, a, b in pairs:
+        if a is None or b is None or (a.status, a.expectation) != (b.status, b.expectation):
+            yield Change("verdict", name, _judged(a), _judged(b))
         elif a.unit != b.unit or is_visible(b.margin - a.margin, a.unit):
-            changes.append(_margin(name, a, b))
-    return changes
+            yield _margin(name, a, b)
 
 
 def _twins(ours: Sequence[str], theirs: Sequence[str]) -> dict[str, str]:
@@ -262,7 +269,7 @@ def _findings(one: Run, two: Run) -> list[Change]:
     changes: list[Change] = []
     for kind in sorted({found.kind for found in (*one.findings, *two.findings)}):
         counts = [sum(found.kind == kind for found in run.findings) for run in (one, two)]
-        changes += _words("findings", kind, str(counts[0]), str(counts[1]))
+        changes += _words("findings", kind.replace("_", " "), *map(str, counts))
     return changes
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.printable import printable
-from harness.plugins.comparison.alignment import aligned_steps, names_of
-from harness.plugins.comparison.compare import Change, RunComparison
+from harness.plugins.comparison.alignment import aligned_steps
+from harness.plugins.comparison.compare import Change, RunComparison, verdict_pairs
 from harness.plugins.comparison.lines import HEADINGS, parting_text
 from harness.recording.stored_run import StoredRun
 from harness.reporting.html import bundle
@@ -18,6 +18,8 @@ from harness.reporting.html.story import ordered_steps
 from harness.reporting.html.write import Page
 
 FOLDER = Path(__file__).with_name("page")
+
+Pairs = Sequence[Sequence[object]]
 
 
 def comparison_page(
@@ -32,16 +34,22 @@ def comparison_page(
         names: What the page calls the runs.
     """
     groups = _groups(comparison.changes)
-    parting = comparison.first_difference
+    parting, verdicts = comparison.first_difference, verdict_pairs(first, second)
     text = "" if parting is None else parting_text(parting)
     moments = [each.time for each in (parting, *comparison.farthest[:1]) if each is not None]
     decisive = (min(moments), max(moments)) if moments else None
     facts = {
-        "pairs": _indices(first, second, comparison.changes),
+        "pairs": _places(
+            ordered_steps(first.run),
+            ordered_steps(second.run),
+            aligned_steps(first.run, second.run),
+        ),
         "parting": None if parting is None else {"time": parting.time, "text": text},
         "farthest": [{"time": each.time, "text": each.text} for each in comparison.farthest],
-        "opens": next((each.time for each in (*comparison.farthest, parting) if each), 0.0),
+        "isSame": comparison.is_same,
         "warnings": comparison.warnings,
+        "verdicts": _places(first.verdicts, second.verdicts, [pair for _, *pair in verdicts]),
+        "names": [name for name, *_ in verdicts],
         "groups": groups,
     }
     page = bundle.rendered(
@@ -75,28 +83,10 @@ def distinct_parts(one: Path, two: Path) -> tuple[str, str]:
     return first, second
 
 
-OF_STEPS = ("step", "trajectory", "duration")
-
-
-def _indices(
-    first: StoredRun, second: StoredRun, changes: Sequence[Change]
-) -> list[dict[str, int | bool | None]]:
-    """Places of aligned steps in the lists of both pages, and whether they differ."""
-    pairs = aligned_steps(first.run, second.run)
-    names = names_of(pairs)
-    changed = {change.name for change in changes if change.what in OF_STEPS}
-    places = [
-        {id(step): index for index, step in enumerate(ordered_steps(each.run))}
-        for each in (first, second)
-    ]
-    return [
-        {
-            "first": places[0].get(id(one)),
-            "second": places[1].get(id(two)),
-            "differs": one is None or two is None or names[0][one.id] in changed,
-        }
-        for one, two in pairs
-    ]
+def _places(ours: Sequence[object], theirs: Sequence[object], pairs: Pairs) -> list[list[int]]:
+    """Pairs as places in the lists of both pages; -1 for what a run does not have."""
+    places = [{id(each): place for place, each in enumerate(run)} for run in (ours, theirs)]
+    return [[at.get(id(each), -1) for at, each in zip(places, pair, strict=True)] for pair in pairs]
 
 
 ORDER = ("outcome", "verdict", "scenario", "margin", "findings", "robot", "seed", "version")
@@ -106,7 +96,7 @@ def _groups(changes: Sequence[Change]) -> list[dict[str, Any]]:
     order = [*ORDER, *(what for what in HEADINGS if what not in ORDER)]
     ranked = sorted(changes, key=lambda change: order.index(change.what))
     return [
-        {"title": HEADINGS[what], "rows": [_row(change) for change in group]}
+        {"kind": what, "title": HEADINGS[what], "rows": [_row(change) for change in group]}
         for what, group in groupby(ranked, key=lambda change: change.what)
     ]
 

@@ -10,6 +10,7 @@ from harness.core.pose_arrays import compose, turn_between
 from harness.core.types import FloatArray, Pair
 from harness.recording.link_poses import replayed_link_poses, tcp_tracks
 from harness.recording.run import Run
+from harness.recording.touched import touched_objects
 from harness.reporting.html.plot_group import MOST_SERIES, Group
 
 MOST_SENSORS = 3  # of four series each in one plot
@@ -130,15 +131,15 @@ def tcp_speed(run: Run) -> Group | None:
 
 
 def _moving(run: Run) -> dict[str, FloatArray]:
-    """Simulated objects that moved, those that moved most first."""
-    found: dict[str, tuple[float, FloatArray]] = {}
+    """Simulated objects that moved or that the robot touched, those that moved most first."""
+    found, touched = dict[str, tuple[float, FloatArray]](), touched_objects(run)
     for obj in run.objects:
         poses = run.signals.object_poses.get(obj.name)
         if poses is None or obj.is_static or not obj.in_simulation:
             continue
         known = poses[np.isfinite(poses[:, 0]), :3]
         travel = max(float(np.ptp(axis)) for axis in known.T) if len(known) else 0.0
-        if travel > 1e-3:
+        if travel > 1e-3 or obj.name in touched:
             found[obj.name] = (travel, poses)
     order = sorted(found, key=lambda name: (-found[name][0], name))[:MOST_SERIES]
     return {name: found[name][1] for name in order}

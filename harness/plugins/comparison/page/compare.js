@@ -3,34 +3,43 @@
 import { Address, readAddress } from "./address.js";
 import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
-import { differencesView, makePairs } from "./differences.js";
+import { Apart } from "./apart.js";
+import { differencesView } from "./differences.js";
 import { byId, element } from "./dom.js";
 import { makeFilm } from "./film.js";
 import { keepDrawing } from "./frames.js";
+import { headline, showHeadline } from "./headline.js";
 import { listenToKeys } from "./keys.js";
 import { makeSides } from "./legend.js";
 import { unpack } from "./payload.js";
+import { makePairs } from "./step_pairs.js";
 import { pairTable } from "./tables.js";
 import { makeTabs } from "./tabs.js";
 import { makeTimeline, stepAt } from "./timeline.js";
 import { TwoPlots } from "./two_plots.js";
 import { Alignment } from "./two_runs.js";
 import { makeTwoScenes } from "./two_scenes.js";
+import { verdictPairs } from "./verdict_table.js";
 
 async function start() {
   const { run: facts } = await unpack(byId("facts"));
   const payloads = [await unpack(byId("first")), await unpack(byId("second"))];
   const runs = payloads.map(({ run }) => run);
-  const alignment = new Alignment(runs[0].steps, runs[1].steps, facts.pairs, runs.map(({ duration }) => duration));
+  const pairs = facts.pairs.map((pair) => Object.fromEntries(["first", "second"].map((run, index) => [run, pair[index] < 0 ? null : pair[index]])));
+  const verdicts = verdictPairs(facts, runs);
+  const apart = new Apart(payloads);
+  const sentences = headline(facts, runs, verdicts, apart);
+  const alignment = new Alignment(runs[0].steps, runs[1].steps, pairs, runs.map(({ duration }) => duration));
   const clock = new Clock(alignment.duration);
   const timeline = makeBothRows(runs, alignment, facts.parting);
   const bands = runs[0].steps.filter(isLeaf).map(({ start, end, band }) => ({ start, end, tone: band }));
-  const plots = TwoPlots.of(payloads, clock, bands, alignment);
+  const plots = TwoPlots.of(payloads, clock, bands, alignment, apart, verdicts);
   const scene = makeTwoScenes(payloads, alignment);
-  const showPair = makePairs(runs.map(({ steps }) => steps), facts.pairs, selectPair);
+  const showPair = makePairs(runs.map(({ steps }) => steps), pairs, verdicts, apart, selectPair);
   const seek = (time) => clock.seek(time);
+  showHeadline(sentences, seek);
   makeTabs([
-    { id: "differences", title: "Differences", content: differencesView(facts, seek) },
+    { id: "differences", title: "Differences", content: differencesView(facts, verdicts, { seek, verdict: selectVerdict }) },
     { id: "first", title: "Setup of A", content: pairTable(runs[0].environment) },
     { id: "second", title: "Setup of B", content: pairTable(runs[1].environment) },
   ]);
@@ -60,6 +69,19 @@ async function start() {
     seek((first === null ? alignment.onClock(step.start) : step.start) + 1e-3);
   }
 
+  function selectVerdict({ first, second }) {
+    const verdict = second && (second.status !== "passed" || !first) ? second : first;
+    if (verdict.time !== null) seek(verdict === second ? alignment.onClock(verdict.time) : verdict.time);
+    if (verdict.plot) plots.reveal(verdict.plot);
+  }
+
+  /** Where the other verdict was decided, once things are apart; else where they are farthest apart. */
+  function opens() {
+    const [{ time }] = sentences;
+    const since = Math.min(...apart.series().map(({ name }) => apart.since(name)));
+    return time !== null && time >= since ? time : (facts.farthest[0] ?? facts.parting)?.time ?? 0;
+  }
+
   function nextStep(direction) {
     const starts = runs[0].steps.filter(({ status }) => status !== "not reached").map(({ start }) => start);
     const others = starts.filter((time) => direction * (time - clock.time) > 2e-3);
@@ -67,9 +89,9 @@ async function start() {
   }
 
   const switches = [
-    ["A", true, (is) => scene && ((scene.shown[0] = is), scene.showBoth())],
-    ["B", true, (is) => scene && ((scene.shown[1] = is), scene.showBoth())],
-    ["next to each other", false, (is) => scene?.putNextTo(is)],
+    [`A ${runs[0].outcome}`, true, (is) => scene && ((scene.shown[0] = is), scene.showBoth())],
+    [`B ${runs[1].outcome}`, true, (is) => scene && ((scene.shown[1] = is), scene.showBoth())],
+    ["side by side", false, (is) => scene?.putNextTo(is)],
     ["steps aligned", false, (is) => {
       alignment.bySteps = is;
       timeline.place();
@@ -92,7 +114,7 @@ async function start() {
   if (scene) makeSides({ ...scene, follows: false, toolPosition: () => runs[0].focus.points[0] }, () => clock.time, "comparison", false);
   listenToKeys(clock, { nextStep, nextFailure: () => facts.parting && seek(facts.parting.time) });
   const place = readAddress(location.hash);
-  seek(place.time ?? facts.opens);
+  seek(place.time ?? opens());
   keepDrawing(clock, scene);
 }
 

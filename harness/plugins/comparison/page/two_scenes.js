@@ -1,13 +1,15 @@
-// Two replays in one view: over each other, the second one tinted, or next to each other.
+// Two replays in one view: over each other, each in its colour where they are apart, or next to each other.
 
-import { rgba, themeColor } from "./dom.js";
+import { byId, rgba, themeColor } from "./dom.js";
+import { Apart } from "./apart.js";
 import { Orbit } from "./orbit.js";
 import { controlOrbit } from "./pointer.js";
 import { Replay } from "./replay.js";
 import { makeView } from "./scene.js";
 
-const TINT = [0.98, 0.55, 0.1];
-const OPACITY = 0.6;
+const TINTS = [[0.15, 0.39, 0.92], [0.98, 0.55, 0.1]]; // of A and of B
+const SHARE = 0.7; // of the tint in a body's colour
+const OPACITY = 0.6; // of B
 
 /** Null where the browser has no WebGL2. @param {any[]} payloads of both runs @param {import("./two_runs.js").Alignment} alignment */
 export function makeTwoScenes(payloads, alignment) {
@@ -26,24 +28,33 @@ export function makeTwoScenes(payloads, alignment) {
   });
   const shown = [true, true];
   const isNextTo = () => Boolean(viewer.halves);
-  const second = replays[1];
-  const colors = new Map(second.bodies.flatMap(({ pieces }) => pieces.map(({ surface }) => [surface, surface.color])));
+  const [first, second] = replays;
+  const colors = new Map(replays.flatMap(({ bodies }) => bodies.flatMap(({ pieces }) => pieces.map(({ surface }) => [surface, surface.color]))));
 
-  /** What of a run is seen: over the other one, the second run's own bodies that move, tinted. */
-  const show = (index, is, isTinted) => {
+  /** Whether a body is at the same place in both runs, so that it is drawn once, as it looks. */
+  const coincides = ({ name }) => {
+    const [a, b] = [first.byName.get(name), second.byName.get(name)];
+    return Boolean(a?.isThere && b?.isThere) && Apart.coincide(a.pose, b.pose);
+  };
+
+  /** What of a run is seen. Over each other, bodies that are apart have the colour of their run, and B's can be seen through. */
+  const show = (index, is, isOver) => {
     for (const body of replays[index].bodies) {
-      const isDrawn = is && body.isThere && !(isTinted && body.fixed && !body.isLink);
+      if (body.fixed && !body.isLink) {
+        for (const { surface } of body.pieces) surface.visible = is && body.isThere && !(isOver && index === 1);
+        continue;
+      }
+      const isTinted = isOver && !coincides(body);
       for (const { surface } of body.pieces) {
-        surface.visible = isDrawn;
-        if (index === 0) continue;
+        surface.visible = is && body.isThere && (isTinted || !isOver || index === 0);
         const color = colors.get(surface);
-        surface.color = isTinted ? [...TINT.map((tint, i) => 0.65 * tint + 0.35 * color[i]), OPACITY] : color;
-        surface.castsShadow = !isTinted && color[3] > 0.99;
+        surface.color = isTinted ? [...TINTS[index].map((tint, i) => SHARE * tint + (1 - SHARE) * color[i]), index ? OPACITY : color[3]] : color;
+        surface.castsShadow = index === 0 || !isTinted;
       }
     }
     paths[index].visible = is;
   };
-  const showBoth = () => [0, 1].forEach((index) => show(index, shown[index], index === 1 && shown[0]));
+  const showBoth = () => [0, 1].forEach((index) => show(index, shown[index], shown[0] && shown[1]));
 
   return {
     viewer, orbit, film, shown,
@@ -55,6 +66,7 @@ export function makeTwoScenes(payloads, alignment) {
     },
     /** @param {boolean} is whether the runs stand next to each other */
     putNextTo(is) {
+      byId("view").classList.toggle("halves", is);
       viewer.halves = is ? [0, 1].map((side) => () => [0, 1].forEach((index) => show(index, index === side, false))) : null;
       if (!is) showBoth();
       viewer.moved();

@@ -22,6 +22,11 @@ function asNode(child) {
   return child instanceof Node ? child : String(child);
 }
 
+/** A name that breaks where its parts meet. @param {string} text @returns {any[]} children of an element */
+export function breakable(text) {
+  return text.split(/(?<=[_.:/])(?=\w)/).flatMap((part, index) => (index ? [document.createElement("wbr"), part] : [part]));
+}
+
 /** @param {string} id @returns {any} */
 export function byId(id) {
   return document.getElementById(id);

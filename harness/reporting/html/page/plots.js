@@ -14,8 +14,9 @@ export class Plots {
    * @param {import("./payload.js").Payload} payload
    * @param {import("./clock.js").Clock} clock
    * @param {{start: number, end: number, tone: string}[]} bands
+   * @param {string[]} [preferred] groups that are shown first, if the run has them
    */
-  constructor(payload, clock, bands) {
+  constructor(payload, clock, bands, preferred = []) {
     this.payload = payload;
     this.clock = clock;
     this.decoded = new Map();
@@ -28,7 +29,7 @@ export class Plots {
       byId("app").classList.add("at-rest");
       byId("plots").append(element("p.empty", {}, "The run took no simulated time: there is nothing to plot."));
     }
-    const first = [...PREFERRED.map((id) => groups.find((group) => group.id === id)), ...groups].filter(Boolean);
+    const first = [...[...preferred, ...PREFERRED].map((id) => groups.find((group) => group.id === id)), ...groups].filter(Boolean);
     const shown = clock.duration > 0 ? [...new Set(first)].slice(0, PREFERRED.length) : [];
     this.panels = shown.map((group) => this.#panel(group.id, bands));
     byId("plots").append(...this.panels.map((panel) => panel.element));

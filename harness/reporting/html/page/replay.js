@@ -2,19 +2,16 @@
 
 import { CREASE, surfacesOf } from "./bodies.js";
 import { creased } from "./normals.js";
-import { decodeMesh, undoDifferences } from "./payload.js";
+import { decodeMesh } from "./payload.js";
+import { Poses } from "./poses.js";
 import { multiply, poseMatrix } from "./vectors.js";
-
-const POSE_SIZE = 7;
 
 export class Replay {
   /** @param {import("./payload.js").Payload} payload @param {import("./viewer.js").Viewer} viewer */
   constructor(payload, viewer) {
     this.viewer = viewer;
-    this.payload = payload;
     this.run = payload.run;
-    this.frames = payload.run.frames;
-    this.columns = undoDifferences(payload.buffer("poses"), this.frames.count);
+    this.poses = new Poses(payload);
     this.meshes = payload.run.meshes.map((head) => {
       const { positions, indices } = decodeMesh(payload, head);
       return creased(positions, indices, CREASE.mesh);
@@ -55,17 +52,11 @@ export class Replay {
   /** The robot as it was commanded, at the same time. */
   #posePlan(time) {
     this.planCopies ??= this.#copies([0.55, 0.36, 0.96]);
-    this.plan ??= this.#commanded();
+    this.plan ??= this.poses.commanded();
     for (const { body, copy, local } of this.planCopies) {
       copy.visible = Boolean(this.showsPlan);
-      if (this.showsPlan) copy.model = multiply(poseMatrix(this.poseOf(body, time, this.plan)), local);
+      if (this.showsPlan) copy.model = multiply(poseMatrix(this.poses.of(body, time, this.plan)), local);
     }
-  }
-
-  /** Commanded poses of the links: what is stored of them is how far they are from the recorded ones. */
-  #commanded() {
-    const apart = undoDifferences(this.payload.buffer("commanded"), this.frames.count);
-    return this.columns.map((value, i) => (i < apart.length ? value + apart[i] : value));
   }
 
   /** Which bodies are switched on. */
@@ -73,20 +64,9 @@ export class Replay {
     return !(body.ghost && this.hidesGhosts);
   }
 
-  /** xyz and quaternion wxyz (not normalised) of a body at a time. */
-  poseOf(body, time, columns = this.columns) {
-    if (body.fixed) return body.fixed;
-    const { count, step } = this.frames;
-    const place = Math.max(0, Math.min(count - 1, time / step));
-    const [before, part] = [Math.floor(place), place % 1];
-    const after = Math.min(count - 1, before + 1);
-    const pose = new Array(POSE_SIZE);
-    for (let i = 0; i < POSE_SIZE; i++) {
-      const column = (body.column * POSE_SIZE + i) * count;
-      const value = (1 - part) * columns[column + before] + part * columns[column + after];
-      pose[i] = i < 3 ? value * this.frames.unit : value;
-    }
-    return pose;
+  /** Pose of a body at a time. @param {any} body @param {number} time [s] */
+  poseOf(body, time) {
+    return this.poses.of(body, time);
   }
 
   /** Let bodies that collide glow by how hard they do; all others keep their colour. @param {Map<string, number>} glows 0 to 1 by name */

@@ -1,6 +1,6 @@
 // The list of steps, folded where they passed: what each did, its line in the file, its verdicts, why it failed.
 
-import { byId, element, scrollInto } from "./dom.js";
+import { breakable, byId, element, scrollInto } from "./dom.js";
 import { statusWord, tone } from "./units.js";
 
 const ROOMY = 12; // steps in sight, up to which long titles take a second line
@@ -75,7 +75,7 @@ function row(step, index, select) {
     `button.step.${step.tone}`,
     { type: "button", onclick: () => select(index), title },
     element("i.sign", { role: "img", "aria-label": statusWord(step.status) }),
-    element("span.title", {}, element("b", {}, isNamed ? step.id : step.summary), isNamed ? element("span.what", {}, ` ${step.summary}`) : null),
+    element("span.title", {}, element("b", {}, ...breakable(isNamed ? step.id : step.summary)), isNamed ? element("span.what", {}, ...breakable(` ${step.summary}`)) : null),
     element("code.place", { title: "Line of the file" }, step.line ? `:${step.line}` : ""),
     element("span.took", {}, step.status === "not reached" ? "–" : duration(step)),
     failure && element("span.why", {}, step.errorCode && element("b", {}, step.errorCode), ` ${step.message}`),
