@@ -192,3 +192,25 @@ def test_presses_say_where_fingers_touch_what_they_hold_and_which_way(gripper_ov
         assert force[:2] @ outward < -0.9 * np.linalg.norm(force) * np.linalg.norm(outward)
         assert np.isnan(signals.presses[pair][0]).all(), "not yet"
     assert all(link in gripper_over_table.link_names for link, _ in signals.presses)
+
+
+@pytest.mark.nightly(but=["0.3"])
+@pytest.mark.parametrize("mass", [0.3, 1.0])
+def test_friction_holds_up_to_coulombs_limit_and_slips_above_it(gripper_over_table, mass):
+    """Friction at 0.81, 0.9 and 0.996 of mu times the sum of both fingers' forces; then above.
+
+    The forces are measured while the fingers hold with little more friction than they need.
+    """
+    friction, weight = 30.0, 9.8 * mass
+    for _ in range(2):
+        simulator, _, fallen = squeeze(gripper_over_table, mass=mass, friction=friction)
+        assert fallen < 1e-3
+        forces = simulator.finish().contact_forces
+        pressed = sum(forces[f"rh_p12_rn_{side}2", "cylinder"][-1] for side in "rl")
+        friction = weight / (0.95 * pressed)
+
+    def sinks(share):
+        return squeeze(gripper_over_table, mass=mass, friction=weight / (share * pressed))[2]
+
+    assert max(sinks(share) for share in (0.81, 0.9, 0.996)) < 2e-4  # in 4 s
+    assert min(sinks(share) for share in (1.004, 1.05)) > 1.0
