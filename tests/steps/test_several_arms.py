@@ -231,6 +231,35 @@ def test_two_arms_at_one_place_are_refused_with_the_pair(tmp_path):
     assert "right_" in failure.message
 
 
+NEIGHBOURS = """
+scenario: a place for one of two arms
+robots:
+  left: {model: open_manipulator_x, base: {xyz: [0, 0.1, 0]}}
+  right: {model: open_manipulator_x, base: {xyz: [0, -0.1, 0]}}
+steps:
+  - wait: 0.5
+  - parallel:
+      - move_to: {position: {xyz: [0.2, 0, 0.15]}}
+        robot: %s
+      - move_to: {position: {xyz: [0.2, 0, 0.15]}}
+        robot: %s
+"""
+
+
+@pytest.mark.parametrize(
+    "arms", [("left", "right"), pytest.param(("right", "left"), marks=pytest.mark.nightly)]
+)
+def test_an_arm_in_the_way_at_the_end_is_refused_with_the_moment(arms, recorded_run):
+    stored = read_run(recorded_run(NEIGHBOURS % arms, "failed") / "run")
+    first, second = stored.run.steps[2:]
+    assert (first.status, second.error_code) == ("passed", "GOAL_IN_COLLISION")
+    assert all(f"{arm}_" in second.message for arm in arms)
+    duration = first.trajectory.duration
+    moment = f"at t={0.5 + duration:.3f} s, {duration:.3f} s into the motions, all others rest"
+    assert second.message.endswith(moment)
+    assert stored.run.ended_early.endswith(moment)
+
+
 BOTH_PICK = f"""
 scenario: both arms work at once
 {PAIR}

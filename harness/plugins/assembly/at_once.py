@@ -60,6 +60,7 @@ class AtOnce:
     def __init__(self, cell: Cell, steps: Sequence[ProgramStep]) -> None:
         self._runner, self._cell = cell.runner, cell
         self._around = self._cell.step, self._cell.notes
+        self._begin = self._cell.simulator.time
         self._branches = [self._branch(step) for step in steps]
 
     def run(self) -> tuple[float, ...]:
@@ -69,7 +70,6 @@ class AtOnce:
             RunEndedError: A part failed, or none can go on.
             StepFailed: The motions of none can be merged, or the arms cannot follow them.
         """
-        begin = self._cell.simulator.time
         try:
             while active := [each for each in self._branches if not each.is_over]:
                 self._round(active)
@@ -84,7 +84,7 @@ class AtOnce:
                 if branch.parts is not None:
                     branch.parts.close()
             self._cell.step, self._cell.notes = self._around
-        return tuple((each.begin or begin) - begin for each in self._branches)
+        return tuple((each.begin or self._begin) - self._begin for each in self._branches)
 
     def _branch(self, step: ProgramStep) -> _Branch:
         if not step.spec.is_made_of_parts:
@@ -229,8 +229,13 @@ class AtOnce:
         """
         assert branch.refused is not None
         failure, records = branch.refused
+        own, now = failure.failure if isinstance(failure, RunEndedError) else failure, ""
+        if (since := self._cell.simulator.time - self._begin) > 0:
+            time = f"t={self._begin + since:.3f} s, {since:.3f} s into the motions"
+            now = f"; at {time}, all others rest"
+        own.message += now
         if isinstance(failure, RunEndedError):
-            self._runner.records += records
+            self._runner.records += [replace(each, message=each.message + now) for each in records]
         elif branch.parts is not None:
             self._end(branch, failure)
             raise RunEndedError(failure, branch.step.summary)

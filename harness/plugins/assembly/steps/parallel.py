@@ -35,7 +35,7 @@ class Parallel(Step):
 
     A `pick` or `place` goes on in rounds: in each one the arms do their next motion at once, and
     what closes or opens a gripper follows. A motion that another arm is in the way of waits for the
-    next round; when no arm can go on, the step fails with the pair of links.
+    next round; when no arm can go on, the step fails with the pair of links and the moment.
     """
 
     short = "steps"
