@@ -141,12 +141,15 @@ class Simulator(Protocol):
         """
         ...
 
-    def force_on_robot(self, span: float, held: Collection[str]) -> float:
+    def force_on_robot(
+        self, span: float, held: Collection[str], along: FloatArray | None = None
+    ) -> float:
         """Sum of the normal forces between the robot and other bodies, mean over some time [N].
 
         Args:
             span: The time until now [s].
             held: Objects that count as parts of the robot.
+            along: A unit vector in the world, of which the robot's push along it counts, (3,).
         """
         ...
 

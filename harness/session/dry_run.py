@@ -105,7 +105,7 @@ class DrySimulator:
 
     def use_controller(self, controller: JointController | None) -> None: ...
 
-    def force_on_robot(self, span: float, held: Collection[str]) -> float:
+    def force_on_robot(self, span: float, held: Collection[str], along: object = None) -> float:
         """What a guarded move waits for happens."""
         return float("inf")
 

@@ -116,6 +116,16 @@ class ContactRecord:
             _add(sums, rows, self._forces[contacts])
         return {pair: found[pair] for pair in sorted(found)}
 
+    def force_on(self, own: Set[str], first: int, last: int, along: FloatArray | None) -> float:
+        """Mean normal force [N] of some bodies on all others; of a unit vector, along it."""
+        names, total = self._physics.body_names, 0.0
+        for numbers, _, contacts in self._by_pair(first, last):
+            inside, force = [each for each in numbers if names[each] in own], self._forces[contacts]
+            if len(inside) == 1 and along is not None:
+                force = force * self._signs(contacts, inside[0]) * (self._normals[contacts] @ along)
+            total += float(force.sum()) if len(inside) == 1 else 0.0
+        return total / (last - first)
+
     def presses(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Contact points and normal forces between a link of the robot and any other body.
 
@@ -261,12 +271,10 @@ class ContactRecord:
     def _pair(self, first: int, second: int) -> BodyPair:
         """The names of two bodies: the robot's link first, otherwise in alphabetical order."""
         names, robot = self._physics.body_names, self._physics.robot_bodies
+        one, other = names[first], names[second]
         if (first in robot) != (second in robot):
-            return (
-                (names[first], names[second]) if first in robot else (names[second], names[first])
-            )
-        a, b = sorted((names[first], names[second]))
-        return a, b
+            return (one, other) if first in robot else (other, one)
+        return min(one, other), max(one, other)
 
 
 def _way_of_points(

@@ -38,14 +38,13 @@ class MujocoSimulator(TrajectoryTracking):
         """T_world_object of the objects in the scene (xyz, quat wxyz), shape (7,) each."""
         return self._objects.present_poses()
 
-    def force_on_robot(self, span: float, held: Collection[str]) -> float:
+    def force_on_robot(
+        self, span: float, held: Collection[str], along: FloatArray | None = None
+    ) -> float:
         """Sum of the normal forces between the robot and other bodies, mean over `span` [N]."""
-        last = self._recording.count
+        last, own = self._recording.count, {*self.description.link_names, *held}
         first = max(0, last - max(1, round(span / self._timestep)))
-        own = {*self.description.link_names, *held}
-        pairs = self._recording.contacts.forces(first, last)
-        forces = (force for pair, force in pairs.items() if (pair[0] in own) != (pair[1] in own))
-        return float(sum(float(force.mean()) for force in forces))
+        return self._recording.contacts.force_on(own, first, last, along)
 
     def wrench(self, sensor: str, span: float) -> FloatArray:
         """What a sensor of force and torque reads, in its axes, mean over `span`, shape (6,)."""

@@ -1,5 +1,7 @@
 """search: a gantry whose quill is a peg finds a hole by a spiral, or says why it does not."""
 
+import re
+
 import pytest
 
 import harness
@@ -66,6 +68,16 @@ def test_a_peg_that_presses_nothing_finds_no_hole(tmp_path):
     assert "nothing was pressed meanwhile" in outside.step("find").message
 
 
+@pytest.mark.parametrize("side", [1, pytest.param(-1, marks=pytest.mark.nightly)])
+def test_a_peg_that_rubs_along_a_side_wall_finds_no_hole(side, tmp_path):
+    aside = f"move_relative: {{direction: {{xyz: [{-side}, 0, 0]}}, distance: 10.3 mm}}"
+    step = PRESSING.replace("wait: 0.25", aside) % SEARCH
+    rubbing = run_of(tmp_path, 0.1 + 0.06 * side, step)
+    find, forces = rubbing.step("find"), rubbing.run.signals.contact_forces["quill", "block"]
+    assert forces[find.start_index] > 1.0
+    assert "nothing was pressed meanwhile" in find.message
+
+
 def test_a_drop_is_measured_from_the_face_that_is_pressed(found, tmp_path):
     early = run_of(tmp_path, 0.1003, PRESSING.replace("0.25", "0.12") % SEARCH)
     step = early.step("find")
@@ -78,7 +90,8 @@ def test_a_drop_is_measured_from_the_face_that_is_pressed(found, tmp_path):
 def test_a_hole_that_is_too_far_away_says_so(tmp_path):
     result = run_of(tmp_path, 0.102, PRESSING % SEARCH.replace("0.5 mm", "0.3 mm"))
     assert "the hole is farther away than the `radius`" in str(result)
-    assert "pressed with 1" in str(result)
+    pressed = re.search(r"it was pressed with ([0-9.]+) N", str(result))
+    assert float(pressed[1]) == pytest.approx(10, rel=0.03)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from harness.ports.motions import TimedLinkMotion
 SHORTEST_RAMP = 0.1  # [s], in which the link gets to its speed along the spiral, and to rest
 TURNING = 0.2  # [m/s^2], across the spiral's narrow first turns: joints of 1 rad/s^2 follow it
 LONGEST = 120.0  # [s], of a search
-PRESSED = 0.1  # [N]; less is no contact, as of `move_until`
+PRESSED = 0.1  # [N] along the direction; less is no contact, as of `move_until`
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,9 @@ class Search(Step):
     The link is commanded along an Archimedean spiral across the direction, while something else
     presses it: `comply` with a `wrench` along the direction, around this step. Every 4 ms its
     measured place is looked at; where it has advanced by `drop` since it began to press, it stops.
-    The step fails where it advances without having pressed, as next to a block, and when the spiral
-    has grown to `radius`. Over an edge it drops as into a hole; `inserted` expects the hole.
+    The step fails where it advances without having pressed that way, as along a side wall, and when
+    the spiral has grown to `radius`. Over an edge it drops as into a hole; `inserted` expects the
+    hole.
     """
 
     verb: ClassVar[str] = "search"
@@ -131,7 +132,7 @@ class Search(Step):
 
         def notices() -> bool:
             nonlocal surface
-            force = cell.simulator.force_on_robot(LOOK, cell.held_objects)
+            force = cell.simulator.force_on_robot(LOOK, cell.held_objects, axis)
             if max(forces) < PRESSED:
                 surface = begin if force < PRESSED else _measured(cell, link)
             forces.append(force)
