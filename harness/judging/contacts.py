@@ -29,7 +29,6 @@ FORCE_WINDOW = 0.010
 otherwise: longer than the vibrations of a stiff contact, shorter than a motion or a person's push.
 """
 SUCTION = "suction"  # the one side of a gripper with suction cups
-SETTLING = 0.008  # until bodies that are put where they touch exactly press each other [s]
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 
@@ -48,18 +47,16 @@ def debounced(run: Run, force: FloatArray) -> FloatArray:
     return trailing_max(force, run.signals.times, DEBOUNCE)
 
 
-def unbroken(run: Run, force: FloatArray, names: Collection[str]) -> FloatArray:
-    """A force between bodies of which gaps of up to `DEBOUNCE` are closed [N], shape (N,).
+def settled(run: Run, holds: BoolArray, names: Collection[str]) -> BoolArray:
+    """Samples that count of a contact between bodies: not those in which it is about to begin.
 
-    Gaps of up to `SETTLING` before the first contact of what was just put there are closed as well.
+    Bodies that are put where they touch exactly press each other some milliseconds later.
     """
-    times, begun = run.signals.times, force.copy()
-    last = last_within(times, SETTLING)
-    objects = [each.name for each in run.objects if each.name in names]
-    for start in {0, *(sample for name in objects for sample in arrivals(run, name).tolist())}:
-        soon = slice(start, last[start] + 1)
-        begun[soon] = np.fmax.accumulate(force[soon][::-1])[::-1]
-    return without_gaps(np.where(np.isnan(force), np.nan, begun), times, DEBOUNCE)
+    counts, last = np.ones(len(holds), dtype=bool), last_within(run.signals.times, DEBOUNCE)
+    for name in {each.name for each in run.objects} & {*names}:
+        for start in (0, *arrivals(run, name)):
+            counts[start : start + int(holds[start : last[start] + 1].argmax())] = False
+    return counts
 
 
 def touched(run: Run, name: str, but: Collection[str] = ()) -> list[str]:
@@ -73,8 +70,9 @@ def bodies_touching(run: Run, name: str, but: Collection[str] = ()) -> dict[str,
 
     Gaps of up to `DEBOUNCE` between two contacts are closed; nothing outlasts its last contact.
     """
+    times = run.signals.times
     return {
-        other: unbroken(run, force_between(run, {name}, {other}), {name, other})
+        other: without_gaps(force_between(run, {name}, {other}), times, DEBOUNCE)
         for other in touched(run, name, but)
     }
 

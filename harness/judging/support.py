@@ -14,16 +14,17 @@ from harness.core.pose_arrays import rotate
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import lowest_points
 from harness.judging.contacts import (
+    DEBOUNCE,
     TOUCH_FORCE,
     bodies_touching,
     force_between,
     touched,
-    unbroken,
 )
 from harness.judging.facts import fact
 from harness.judging.hands import every_hand_link
 from harness.judging.hold import gripped, weight_of
 from harness.judging.poses import object_poses
+from harness.judging.temporal import without_gaps
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 
@@ -175,7 +176,7 @@ def supports(run: Run, name: str, links: Collection[str] = ()) -> dict[str, Floa
         if upward is None:
             upward = np.where(is_below(run, body, name), force, 0.0)
         # no part of a force is more than it is, and unknown where it is
-        carrying[body] = unbroken(run, np.minimum(upward, force), {body, name})
+        carrying[body] = without_gaps(np.minimum(upward, force), run.signals.times, DEBOUNCE)
     return carrying
 
 

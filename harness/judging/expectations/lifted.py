@@ -123,7 +123,8 @@ class Lifted(ArmPredicate, ObjectPredicate):
             carriers = [body for body, force in others.items() if force[sample] > TOUCH_FORCE]
             why, more = hold.flaw(sample, gained, time)
             if carriers:
-                why = f"{name} touches {' and '.join(carriers)}"
+                it = name if hold.held[sample] else f"{why}, and it"
+                why = f"{it} touches {' and '.join(carriers)}"
             rose = " of ".join(amounts(gained, self.above, "m"))
             text = (
                 f"{name} rose {rose}, but {why}: {pressed}" if why else f"lifted {rose}: {pressed}"
@@ -150,19 +151,20 @@ class _Hold:
     """Where the hand holds an object in the balance of forces, and how far it has raised it.
 
     Attributes:
+        held: Samples at which the hand holds it, shape (N,).
         is_steady: Samples at which it is held for long enough, carried, and still in the hand.
         raised: Height that the hand gave it since it holds it [m], shape (N,).
     """
 
     def __init__(self, run: Run, name: str, *, cradled_too: bool) -> None:
         self._run, self._name = run, name
-        self._held = _touched_by_hand(run, name) if cradled_too else held_by_fingers(run, name)
-        self._duration = held_for(run, self._held)
+        self.held = _touched_by_hand(run, name) if cradled_too else held_by_fingers(run, name)
+        self._duration = held_for(run, self.held)
         self._carried = carried_weight(run, name)
         self._least = CARRIED_SHARE * weight_of(run, name)
         self._moved, self._turned = moves_in_hand(run, name)
-        self.raised = raised_by_hand(run, name, self._held)
-        self.is_steady = self._held & (self._duration >= HOLD_TIME - TIME_RESOLUTION)
+        self.raised = raised_by_hand(run, name, self.held)
+        self.is_steady = self.held & (self._duration >= HOLD_TIME - TIME_RESOLUTION)
         self.is_steady &= (self._moved <= STEADY) & (self._turned <= STEADY_TURN)
         if self._carried is not None:
             self.is_steady &= self._carried >= self._least
@@ -170,7 +172,7 @@ class _Hold:
     def flaw(self, sample: int, gained: float, time: float) -> tuple[str, list[Measure]]:
         """Why the height of a sample does not count, or not all of it; empty where it does."""
         name = self._name
-        if not self._held[sample]:
+        if not self.held[sample]:
             lies = cradled(self._run, name)[sample]
             return f"{name} lies on the fingers, which do not press it" if lies else (
                 f"nothing holds {name}{_seal(self._run, name, sample)}"

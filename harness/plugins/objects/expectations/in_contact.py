@@ -21,13 +21,14 @@ from harness.judging.contacts import (
     force_between,
     pairs_of,
     sample_time,
-    unbroken,
+    settled,
     unseen_contacts,
 )
 from harness.judging.expectation import SPECIAL_BODIES, Predicate
 from harness.judging.hold import averaged_force
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
+from harness.judging.temporal import without_gaps
 from harness.judging.window import Window, lasting
 from harness.language.base import Duration, Force, Name
 from harness.language.expectation import Quantity
@@ -39,10 +40,10 @@ CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "c
 class InContact(Predicate):
     """The two bodies touch.
 
-    A contact lasts through gaps of at most 10 ms, as stiff bodies rattle, and 8 ms before the first
-    one of what was just put there. It is judged while both are in the physics: with an object that
-    only the planner knows it is not observable, before one is there it is not reached. A contact
-    without `min_force` lasts for a single sample at least; a force is averaged over `force_window`.
+    A contact lasts through gaps of at most 10 ms, as stiff bodies rattle; what is put where it
+    touches presses up to 10 ms later, and is judged from then on, for `on` too. Both have to be in
+    the physics: what only the planner knows is not observable, what is not there yet not reached. A
+    contact without `min_force` lasts a sample at least; a force is averaged over `force_window`.
     """
 
     short = "between"
@@ -89,10 +90,9 @@ class InContact(Predicate):
         if self.min_force > 0:
             every = averaged_force(run, every, self.force_window)
         force = window.cut(every)
-        lasting_force = unbroken(run, every, firsts | seconds)
+        lasting_force = without_gaps(every, run.signals.times, DEBOUNCE)
         limit = max(self.min_force, TOUCH_FORCE)
         part = Part(CONTACT, window.cut(lasting_force), limit, ">=", detail=f"{first} and {second}")
-
         touching = np.flatnonzero(force >= TOUCH_FORCE)
 
         def text(_: int, measure: Measure) -> str:
@@ -105,7 +105,8 @@ class InContact(Predicate):
             peak = amount(float(force.max()), "N")
             return f"{now} (first at t={begun:.3f} s, {amount(seconds, 's')} in all, up to {peak})"
 
-        together = lasting(window.cut(could_touch(run, pairs)))
+        counts = settled(run, lasting_force >= limit, firsts | seconds)
+        together = lasting(window.cut(could_touch(run, pairs))) & window.cut(counts)
         return replace(
             all_of(window, [part], text, applies=together),
             pairs=len(pairs),

@@ -8,7 +8,7 @@ from pydantic import Field
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.amounts import amounts
-from harness.judging.contacts import DEBOUNCE
+from harness.judging.contacts import DEBOUNCE, settled
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import present
@@ -42,10 +42,12 @@ class On(ObjectPredicate):
         run, name = window.run, self.object
         force = supports(run, name).get(self.support, np.zeros(len(run.signals.times)))
         limit = required_support(run, name)
+        counts = settled(run, force >= limit, {name, self.support})
         part = Part(SUPPORT, window.cut(force), limit, ">=", detail=self.support)
 
         def text(_: int, measure: Measure) -> str:
             force, required = amounts(measure.value, limit, "N")
             return f"{self.support} carries {name} with {force} of {required}"
 
-        return all_of(window, [part], text, present=window.cut(present(run, name)))
+        here, counts = window.cut(present(run, name)), window.cut(counts)
+        return all_of(window, [part], text, present=here, applies=counts)
