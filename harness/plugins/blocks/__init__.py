@@ -1,0 +1,1 @@
+"""Steps made of steps, here and in other files."""

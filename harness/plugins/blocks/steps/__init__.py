@@ -1,0 +1,1 @@
+"""Steps made of steps: `include`, `repeat`."""

@@ -1,1 +1,0 @@
-"""Steps from other files."""
