@@ -5,8 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from copy import deepcopy
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -24,10 +23,6 @@ STALL_SOLREF = (0.002, 1.0)
 
 STALL_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """Its impedance: no motor moves the joint by 1e-4 rad."""
-
-
-_STATE = ("grip_share", "_stalled", "_deviation", "_latency", "_waiting", "_rng", "noise")
-"""Attributes of the faults that a snapshot copies."""
 
 
 class MujocoFaults:
@@ -49,15 +44,6 @@ class MujocoFaults:
         self._waiting = np.empty((0, len(physics.actuated)))  # delayed controls, oldest first
         self._rng = np.random.default_rng(0)
         self.noise = np.zeros((1, len(physics.actuated)))  # of the most recent samples
-
-    def state(self) -> Mapping[str, Any]:
-        """A copy of the active faults, for `restore`."""
-        return deepcopy({name: getattr(self, name) for name in _STATE})
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Make the faults those of an earlier `state`."""
-        for name, value in deepcopy(dict(state)).items():
-            setattr(self, name, value)
 
     def set_friction(self, name: str, sliding: float) -> float:
         """Change an object's sliding friction, and its other frictions in proportion."""

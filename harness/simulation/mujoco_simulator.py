@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from copy import deepcopy
 
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
@@ -16,8 +15,6 @@ from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import UnrestFailure
 from harness.recording.motion import Motion
 from harness.recording.signals import Signals
-from harness.simulation.snapshot import PhysicsState, changed_arrays, load_state
-from harness.simulation.step_state import step_state
 from harness.simulation.trajectory_tracking import SETTLE_EVERY, TrajectoryTracking
 from harness.simulation.wrench_sensors import Tare
 
@@ -155,32 +152,3 @@ class MujocoSimulator(TrajectoryTracking):
         """All recorded signals from a sample on, without clearances."""
         poses, surfaces = self._objects.recorded_poses(first), self._surfaces.recorded(first)
         return self._recording.signals(poses, surfaces, first)
-
-    def snapshot(self) -> PhysicsState:
-        """Everything that decides how the run continues."""
-        return PhysicsState(
-            step_state(self._model, self._data),
-            changed_arrays(self._model),
-            self.sample_count,
-            self._command.copy(),
-            self._control.copy(),
-            dict(self._grips),
-            {joint: gripper.pending for joint, gripper in self._grippers.items()},
-            deepcopy(self._drive.controller),
-            self.faults.state(),
-            deepcopy(self._objects.log),
-            deepcopy(self._surfaces.log),
-        )
-
-    def restore(self, state: PhysicsState) -> None:
-        """Go back to a snapshot of this simulator; later samples are forgotten."""
-        load_state(self._model, self._data, state)
-        self._command, self._control = state.command.copy(), state.control.copy()
-        self._grips = dict(state.grips)
-        self._drive.restore(state.controller)
-        for joint, gripper in self._grippers.items():
-            gripper.pending = state.pending[joint]
-        self._objects.log = deepcopy(dict(state.objects))
-        self.faults.restore(state.faults)
-        self._surfaces.log = deepcopy(dict(state.surfaces))
-        self._recording.rewind(state.samples)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.simulation.mujoco_simulator import MujocoSimulator
+from harness.plugins.studio.live_simulator import LiveSimulator
 from tests.simulation.physics_scenes import a_box, a_cylinder
 from tests.simulation.test_determinism import assert_equal_bits
 
@@ -36,7 +36,7 @@ def a_slope():
 
 def simulator_of(description, objects, *, is_asleep=True, **options):
     """A simulator in which everything has come to rest, and asleep if it may."""
-    simulator = MujocoSimulator(description, objects, [obj.name for obj in objects], **options)
+    simulator = LiveSimulator(description, objects, [obj.name for obj in objects], **options)
     if not is_asleep:
         simulator.physics.model.opt.enableflags = 0
     simulator.hold(2.0)
@@ -123,14 +123,14 @@ def test_what_was_welded_to_a_body_at_rest_falls_when_it_is_released(gripper_ove
 @pytest.mark.parametrize("gravity", [1e-4, 1e-2, 1.6])
 def test_nothing_falls_asleep_in_the_air(gripper_over_table, gravity):
     objects = (a_box("box", (0.05, 0.05, 0.05), (0.6, 0, 9.0), mass=0.1),)
-    simulator = MujocoSimulator(gripper_over_table, objects, ("box",), gravity=(0, 0, -gravity))
+    simulator = LiveSimulator(gripper_over_table, objects, ("box",), gravity=(0, 0, -gravity))
     simulator.hold(1.0)
     assert 9.0 - simulator.object_pose("box").translation[2] == pytest.approx(gravity / 2, rel=0.01)
 
 
 def test_what_drifts_slowly_without_gravity_goes_on(gripper_over_table):
     objects = (a_box("box", (0.05, 0.05, 0.05), (0.6, 0, 0.5), mass=0.1),)
-    simulator = MujocoSimulator(gripper_over_table, objects, ("box",), gravity=(0, 0, 0))
+    simulator = LiveSimulator(gripper_over_table, objects, ("box",), gravity=(0, 0, 0))
     simulator.faults.push({"box": np.array([1e-7, 0.0, 0.0])}, 0.1)  # 0.1 um/s
     before = simulator.object_pose("box").translation[0]
     simulator.hold(1.0)
@@ -148,7 +148,7 @@ def strike(simulator):
 @pytest.mark.parametrize("rested", [0.3, 0.505, 1.0])
 def test_a_snapshot_holds_what_is_asleep(gripper_over_table, rested):
     objects = a_stack()
-    simulator = MujocoSimulator(gripper_over_table, objects, [obj.name for obj in objects])
+    simulator = LiveSimulator(gripper_over_table, objects, [obj.name for obj in objects])
     simulator.hold(rested)
     state = simulator.snapshot()
     first = strike(simulator)
@@ -162,7 +162,7 @@ def test_time_in_pieces_puts_the_same_to_sleep(gripper_over_table):
     objects = a_stack()
     runs = []
     for pieces in (1, 3, 97, 1000):
-        simulator = MujocoSimulator(gripper_over_table, objects, [obj.name for obj in objects])
+        simulator = LiveSimulator(gripper_over_table, objects, [obj.name for obj in objects])
         for part in np.array_split(np.arange(1000), pieces):
             simulator.hold_samples(len(part))
         runs.append(strike(simulator))

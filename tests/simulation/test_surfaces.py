@@ -5,7 +5,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
-from harness.simulation.mujoco_simulator import MujocoSimulator
+from harness.plugins.studio.live_simulator import LiveSimulator
 from tests.simulation.physics_scenes import a_box
 
 STILL = SurfaceMotion()
@@ -16,7 +16,7 @@ def a_cell(robot, motion=STILL, friction=0.8, at=(0.4, 0.0)):
     """A belt of which the middle is at (0.4, 0), and a box on it."""
     belt = a_box("belt", (2.0, 0.6, 0.1), (0.4, 0, 1.0), surface_motion=motion)
     box = a_box("box", (0.05, 0.05, 0.05), (*at, 1.075), mass=0.3, friction=friction)
-    return MujocoSimulator(robot, (belt, box), ("belt", "box"))
+    return LiveSimulator(robot, (belt, box), ("belt", "box"))
 
 
 def velocities(simulator, samples):
@@ -63,7 +63,7 @@ def test_a_turntable_carries_a_box_about_its_middle(ur3e):
 def test_a_turned_belt_moves_things_in_its_own_axes(ur3e):
     belt = a_box("belt", (2.0, 0.6, 0.1), (0.4, 0, 1.0), surface_motion=ALONG_X)
     box = a_box("box", (0.05, 0.05, 0.05), (0.4, 0, 1.075), mass=0.3)
-    simulator = MujocoSimulator(ur3e, (belt, box), ("belt", "box"))
+    simulator = LiveSimulator(ur3e, (belt, box), ("belt", "box"))
     simulator.move_object("belt", SE3.from_xyz_rpy((0.4, 0, 1.0), (0, 0, np.pi / 2)))
     simulator.hold(0.3)
     assert velocities(simulator, 1)[-1] == pytest.approx([0, 0.2, 0], abs=1e-3)

@@ -11,10 +11,10 @@ from harness.core.types import FloatArray
 from harness.planning.collision.collision_model import SceneState
 from harness.planning.collision.scene import CoalScene
 from harness.plugins.studio.live_simulator import LiveSimulator
+from harness.plugins.studio.snapshot import PhysicsState
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_record import StepRecord
 from harness.session.execute import ProgramExecution
-from harness.simulation.snapshot import PhysicsState
 
 
 @dataclass(frozen=True, eq=False)

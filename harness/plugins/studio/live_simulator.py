@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from typing import Any
 
 import mujoco
@@ -12,6 +13,12 @@ import numpy as np
 
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
+from harness.plugins.studio.snapshot import (
+    OF_FAULTS,
+    PhysicsState,
+    changed_arrays,
+    load_state,
+)
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints
 from harness.simulation.step_state import refresh, set_step_state, step_state, wake
@@ -88,6 +95,36 @@ class LiveSimulator(MujocoSimulator):
                 found[first, second] = found.get((first, second), 0.0) + float(force[0])
         set_step_state(self._model, self._data, state)
         return found
+
+    def snapshot(self) -> PhysicsState:
+        """Everything that decides how the run continues."""
+        return PhysicsState(
+            step_state(self._model, self._data),
+            changed_arrays(self._model),
+            self.sample_count,
+            self._command.copy(),
+            self._control.copy(),
+            dict(self._grips),
+            {joint: gripper.pending for joint, gripper in self._grippers.items()},
+            deepcopy(self._drive.controller),
+            {name: deepcopy(getattr(self.faults, name)) for name in OF_FAULTS},
+            deepcopy(self._objects.log),
+            deepcopy(self._surfaces.log),
+        )
+
+    def restore(self, state: PhysicsState) -> None:
+        """Go back to a snapshot of this simulator; later samples are forgotten."""
+        load_state(self._model, self._data, state)
+        self._command, self._control = state.command.copy(), state.control.copy()
+        self._grips = dict(state.grips)
+        self._drive.restore(state.controller)
+        for joint, gripper in self._grippers.items():
+            gripper.pending = state.pending[joint]
+        self._objects.log = deepcopy(dict(state.objects))
+        for name, value in state.faults.items():
+            setattr(self.faults, name, deepcopy(value))
+        self._surfaces.log = deepcopy(dict(state.surfaces))
+        self._recording.rewind(state.samples)
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:
         count = len(points) - 1

@@ -9,8 +9,8 @@ import harness
 from harness.core.spatial import SE3
 from harness.core.wrench_sensor import Payload, WrenchSensor
 from harness.language.scenario import RobotSpec
+from harness.plugins.studio.live_simulator import LiveSimulator
 from harness.robot.load import load_robot
-from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.wrench_sensors import WrenchSensors
 from tests.plugins.suction.test_seals import RIM, cup
 from tests.simulation.physics_scenes import a_box
@@ -38,7 +38,7 @@ def held_load(robot, offset, mass=2.0, *, loaded=True, **options):
     """The simulator of an arm that holds a load at T_link_load, far from everything."""
     here = robot.link_poses(robot.start_positions())[LINK]
     load = replace(a_box("load", (0.02, 0.02, 0.02), (0, 0, 0), mass=mass), pose=here @ offset)
-    simulator = MujocoSimulator(robot, [load], ["load"] if loaded else [], **options)
+    simulator = LiveSimulator(robot, [load], ["load"] if loaded else [], **options)
     if loaded:
         simulator.weld("load", LINK)
     return simulator
@@ -283,7 +283,7 @@ def test_a_sensor_that_carries_a_cup_reads_what_the_vacuum_holds(mass, lever, ti
     )
     place = SE3(np.eye(3), rim.translation) @ turn @ SE3.from_xyz_rpy((lever, 0, -0.0205))
     plate = replace(a_box("plate", (0.1, 0.1, 0.04), (0, 0, 0), mass=mass), pose=place)
-    simulator = MujocoSimulator(robot, (plate,), ("plate",), gravity=(0, 0, 0))
+    simulator = LiveSimulator(robot, (plate,), ("plate",), gravity=(0, 0, 0))
     simulator.command_gripper(0.005, 5.0, timeout=2)
     free = simulator.wrench("wrist", 0.05)
     assert free == pytest.approx(np.zeros(6), abs=0.02), "75 N of vacuum are in balance"

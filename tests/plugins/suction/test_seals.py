@@ -7,8 +7,8 @@ from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.language.scenario import RobotSpec
+from harness.plugins.studio.live_simulator import LiveSimulator
 from harness.robot.load import load_robot
-from harness.simulation.mujoco_simulator import MujocoSimulator
 from tests.simulation.physics_scenes import a_box
 
 RADIUS, LIP, VACUUM, FRICTION = 0.02, 0.0015, 60000.0, 0.5  # robots/suction_cup/robot.yaml
@@ -31,7 +31,7 @@ def hang(robot, obj, *, hold=0.4, table=None):
     """Switch the suction on over an object on a support, take the support away, and wait."""
     lowest = obj.pose.translation[2] - 0.02
     support = table or a_box("table", (0.6, 0.6, 0.1), (0, 0, lowest - 0.05))
-    simulator = MujocoSimulator(robot, (support, obj), ("table", obj.name))
+    simulator = LiveSimulator(robot, (support, obj), ("table", obj.name))
     simulator.hold(0.02)
     result = simulator.command_gripper(0.005, 5.0, timeout=2)
     simulator.remove_object("table")

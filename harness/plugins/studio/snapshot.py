@@ -38,6 +38,9 @@ CHANGED_IN_PLACE = (
 )
 """Arrays of the model that objects, surfaces, welds, grips and faults write to during a run."""
 
+OF_FAULTS = ("grip_share", "_stalled", "_deviation", "_latency", "_waiting", "_rng", "noise")
+"""Attributes of the active faults."""
+
 
 @dataclass(frozen=True, eq=False)
 class PhysicsState:
@@ -52,7 +55,7 @@ class PhysicsState:
         grips: Effort limits of grippers, by actuator.
         pending: Set points of grippers that set out with the next motion, by joint.
         controller: The joint controller, with its state.
-        faults: The state of the active faults.
+        faults: Values of the attributes `OF_FAULTS` of the active faults, by name.
         objects: Since which samples each object stands where it was put; None: it is absent.
         surfaces: Since which samples the surface of each belt moves how.
     """
