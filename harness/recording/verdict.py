@@ -121,5 +121,5 @@ class Verdict:
         if not self.points:
             return ""
         if self.earned is None:
-            return f"{self.points:g} points"
+            return f"{self.points:g} point{'' if self.points == 1 else 's'}"
         return f"{self.earned:g} of {self.points:g} points"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import Problem
+from harness.recording.explanation import recorded_explanation
 from harness.recording.run import Outcome
 from harness.recording.step_record import StepRecord, StepStatus, step_title
 from harness.recording.stored_run import PAGE
@@ -24,6 +25,7 @@ class StepLine:
         line: The line in the scenario file, from 1; 0 if unknown.
         explanation: Why it failed, a line each: the result of every stage, what to do.
         path: Place in the expanded file: `steps[1].reach` is nested in `steps[1]`.
+        advice: What the user can do about its failure; empty where nothing is known.
     """
 
     id: str
@@ -36,6 +38,7 @@ class StepLine:
     line: int = 0
     explanation: tuple[str, ...] = ()
     path: str = ""
+    advice: str = ""
 
     @property
     def title(self) -> str:
@@ -56,6 +59,7 @@ class StepLine:
             line=step.line,
             explanation=explanation_lines(step.explanation, step.message),
             path=step.path,
+            advice=recorded_explanation(step.explanation).advice or "",
         )
 
 

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from harness.recording.step_record import is_nested
-from harness.reporting.result import CaseResult
+from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.suite.record import SuiteCase
 
 
@@ -42,19 +42,28 @@ def deciding_picture(result: CaseResult, width: int) -> bytes | None:
 
 def _deciding_step(result: CaseResult) -> int:
     """The number of the step, from 1, at whose end or within which a case failed."""
+    for number, step in _innermost(result):
+        if step.status == "failed":
+            return number
+    verdict = next((each for each in result.verdicts if each.status != "passed"), None)
+    return step_at(result, math.nan if verdict is None else verdict.time)
+
+
+def step_at(result: CaseResult, time: float) -> int:
+    """The number, from 1, of the step that was carried out at a time [s]; NaN: of the last one."""
+    found, end = 1, 0.0
+    for number, step in _innermost(result):
+        found, end = number, end + step.sim_time
+        if end >= time - 1e-9:
+            break
+    return found
+
+
+def _innermost(result: CaseResult) -> list[tuple[int, StepLine]]:
+    """Numbers of the steps that were carried out, without those that others are nested in."""
     steps = [step for step in result.steps if step.status != "not reached"]
-    inner = [
+    return [
         (number, step)
         for number, step in enumerate(steps, start=1)
         if not any(is_nested(other.path, step.path) for other in steps)
     ]
-    for number, step in inner:
-        if step.status == "failed":
-            return number
-    verdict = next((each for each in result.verdicts if each.status != "passed"), None)
-    time, end = math.inf if verdict is None else verdict.time, 0.0
-    for number, step in inner:
-        end += step.sim_time
-        if end >= time - 1e-9:
-            return number
-    return inner[-1][0] if inner else 1

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from harness.core.registry import registry
 from harness.plugins.grading.assignment import Limits
 from harness.plugins.grading.classroom.confined import (
     IS_SUBREAPER,
@@ -24,7 +25,7 @@ from harness.plugins.grading.classroom.confined import (
     descendants,
 )
 from harness.plugins.grading.classroom.pages import distribution
-from harness.plugins.grading.classroom.results import Criterion
+from harness.plugins.grading.classroom.results import Criterion, advice
 from tests.plugins.grading.classes import IK, SOLUTION, SUBMISSIONS, scenario_class
 from tests.reporting.browser import new_context
 
@@ -85,6 +86,14 @@ def test_students_see_margins_of_hidden_cases_and_not_the_cases(graded):
     assert not (graded / "hidden/perfect").exists()
 
 
+def test_there_is_advice_on_every_built_in_expectation_and_no_other():
+    known = registry("expectation")
+    words = {word.removeprefix("never ") for word in advice()}
+    assert words - set(known) == set()
+    combining = {"always", "eventually", "never", "until", "formula"}
+    assert set(known.built_in_modules) - words == combining
+
+
 def test_the_page_of_the_class_shows_how_points_are_distributed(graded):
     text = (graded / "index.html").read_text()
     parts = re.findall(r'class="hidden">(?:from|all) ([\d.]+)[^<]* points: (\d+) submission', text)
@@ -122,6 +131,51 @@ def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_s
     assert order == sorted(order)
     assert "the public case passes and a hidden one fails: constant" in text
     assert "What keeps submissions apart" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "advice"),
+    [
+        ("low", "the TCP is at the target: failed by", "→ The TCP is the point between"),
+        ("constant", "Everything holds in the case that you see", "→ Take what varies from"),
+        ("typo", "Line 5 of your file", "→ Did you mean `move_to`?"),
+        ("moves", "`inject` changes the scene", "→ Leave the step out"),
+        ("broken", "cannot be graded", "→ Hand in what the exercise asks for"),
+        ("perfect", "", "→ Every expectation holds"),
+    ],
+)
+def test_every_student_reads_what_to_do_next(graded, browser, name, words, advice):
+    with closing(new_context(browser, viewport={"width": 390, "height": 900})) as context:
+        opened = context.new_page()
+        opened.goto((graded / "students" / name / "index.html").as_uri())
+        said = opened.inner_text("#next")
+        [shown] = opened.locator("#next .advice").all()
+        arrow = shown.evaluate("p => getComputedStyle(p, '::before').content")
+        assert words in said
+        assert f"{arrow.strip(chr(34))} {shown.inner_text()}".startswith(advice)
+
+
+def test_a_picture_says_what_failed_in_its_step_and_not_that_the_motion_passed(graded, browser):
+    with closing(new_context(browser, viewport={"width": 1440, "height": 900})) as context:
+        opened = context.new_page()
+        opened.goto((graded / "students/low/index.html").as_uri())
+        captions = opened.locator("figcaption").all_inner_texts()
+        assert [each.split()[0] for each in captions] == ["1/2", "2/2"]
+        assert [EXERCISE in each for each in captions] == [False, True]
+        assert "passed" not in " ".join(captions)
+        sizes = """[...document.querySelectorAll("figcaption, figcaption *")]
+            .map(each => parseFloat(getComputedStyle(each).fontSize))"""
+        assert min(opened.evaluate(sizes)) >= 12
+        shapes = """[...document.querySelectorAll(".pictures img")].map(image =>
+            image.clientHeight / image.clientWidth
+            - (image.naturalHeight - 26) / image.naturalWidth)"""
+        assert opened.evaluate(shapes) == pytest.approx([0, 0], abs=0.01), "the strip is cut off"
+        link = opened.locator("figure a").last.get_attribute("href")
+        assert (graded / "students/low" / link).is_file()
+
+
+def test_a_mistake_of_a_file_is_said_once(graded):
+    assert page(graded, "typo").count("no verb is called") == 1
 
 
 @pytest.mark.parametrize("width", [1440, 390])

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import base64
+import math
 import os
 from bisect import bisect_right
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import count, pairwise
 from pathlib import Path
 from urllib.parse import quote
@@ -16,9 +17,9 @@ from harness.plugins.grading.classroom.results import ClassGrade, Criterion, Stu
 from harness.plugins.grading.classroom.run import HIDDEN, RUN, STUDENTS
 from harness.plugins.grading.classroom.tables import TABLES
 from harness.reporting.html import bundle
-from harness.reporting.result import CaseResult
 from harness.reporting.suite import page as suite_page
-from harness.reporting.terminal import causes, failure_place
+from harness.reporting.suite.failure_picture import step_at
+from harness.reporting.terminal import causes, failure_place, root_failures
 
 FOLDER = Path(__file__).with_name("page")
 PAGE = "index.html"
@@ -27,34 +28,6 @@ LARGEST_PICTURE = 10**6  # [bytes]
 FEWEST_BARS, MOST_BARS = 5, 12  # of the distribution of points, but for that of full marks
 ROUNDING = 1e-9  # [points]: sums such as 0.1 + 0.2 belong to the bar they begin
 FEWEST_DRAWN = 5  # submissions; the points of fewer are read from the table
-
-PROTECTS = {
-    "user": "Each program ran as a user of its own, in a copy of its submission: it can change"
-    " nothing of other submissions, results or pages, and read what every user of this machine can."
-    " Folders of assignments, submissions and grades that only their owner can enter are hidden.",
-    "process": "Each program ran as the user who graded, in a copy of its submission: a program"
-    " that is written to harm can read and change what this user can. Start the command as root in"
-    " a container, with a Python that all users can read, to prevent that.",
-}
-"""What keeps programs of students apart, by how they ran."""
-
-
-@dataclass(frozen=True)
-class Loss:
-    """What a criterion cost the class.
-
-    Attributes:
-        lost: Points of all submissions.
-        share: The share of its points that were lost.
-        public: The number of submissions that fail it in the public case.
-        hidden: Names of those that pass it there and fail a hidden case.
-    """
-
-    criterion: Criterion
-    lost: float
-    share: float
-    public: int
-    hidden: tuple[str, ...]
 
 
 def write_pages(grade: ClassGrade, folder: Path) -> Path:
@@ -75,19 +48,21 @@ def write_pages(grade: ClassGrade, folder: Path) -> Path:
     return folder / PAGE
 
 
-def losses(grade: ClassGrade) -> list[Loss]:
-    """What each criterion cost the class, the most expensive first."""
-    found: list[Loss] = []
+def losses(grade: ClassGrade) -> list[tuple[Criterion, float, int, list[str]]]:
+    """What each criterion cost the class, the most expensive first.
+
+    Returns:
+        The criterion, its lost points, the number of submissions that fail it in the public case,
+        and the names of those that fail it in a hidden case alone.
+    """
+    found: list[tuple[Criterion, float, int, list[str]]] = []
     for index, criterion in enumerate(grade.criteria):
-        lost, public, hidden = 0.0, 0, list[str]()
-        for student in grade.students:
-            lost += criterion.points - (student.earned_of(index) if student.runs else 0.0)
-            public += student.public is None or bool(student.public.marks[index].reason)
-            if index in student.hidden_loss:
-                hidden.append(student.submission.name)
-        share = lost / (criterion.points * len(grade.students)) if criterion.points else 0.0
-        found.append(Loss(criterion, round(lost, 6), share, public, tuple(hidden)))
-    return sorted(found, key=lambda each: -each.lost)
+        students = grade.students
+        lost = sum(criterion.points - (s.earned_of(index) if s.runs else 0.0) for s in students)
+        public = sum(s.public is None or bool(s.public.marks[index].reason) for s in students)
+        hidden = [s.submission.name for s in students if index in s.hidden_loss]
+        found.append((criterion, round(lost, 6), public, hidden))
+    return sorted(found, key=lambda each: -each[1])
 
 
 def distribution(grade: ClassGrade) -> list[tuple[float, float, int]]:
@@ -127,7 +102,7 @@ def _class_html(grade: ClassGrade, folder: Path) -> str:
         distribution=distribution(grade) if len(students) >= FEWEST_DRAWN else [],
         cases=cases,
         tables=TABLES,
-        protects=PROTECTS[grade.confinement],
+        confinement=grade.confinement,
         runs_programs=grade.assignment.model.kind in ("node", "ik"),
     )
 
@@ -147,36 +122,43 @@ def _student_html(grade: ClassGrade, student: StudentGrade, own: Path) -> str:
     public = student.public
     result = public.result if public is not None else None
     page = Path(result.page) if result is not None and result.page else None
+    lost = [each for each in (public.marks if public else ()) if each.verdict and each.reason]
+    decided = [
+        (step_at(result, each.verdict.time or math.nan), each)  # 0: it never came true
+        for each in lost
+        if result is not None and each.verdict and not each.holds
+    ]
+    steps = result.steps if result is not None else ()
     return bundle.rendered(
         FOLDER / "student.html",
         script="",
         style=_style(),
-        title=grade.assignment.model.assignment,
-        description=grade.assignment.model.description,
+        exercise=grade.assignment.model,
         student=student,
         result=result,
-        reasons=_reasons(result) if result is not None else [],
+        reasons=causes(replace(result, verdicts=())) if result is not None else [],
+        failed_steps=root_failures(steps),
+        first=min(lost, key=lambda each: each.holds, default=None),
+        decided=decided,
         replay=f"{RUN}/{quote(os.path.relpath(page, own / RUN))}" if page else "",
         place=failure_place(result) if result is not None else "",
-        pictures=_pictures(own / RUN / "images"),
+        pictures=_pictures(own),
+        steps=[each for each in steps if each.status != "not reached"],
     )
 
 
-def _reasons(result: CaseResult) -> list[str]:
-    """Why a case did not run to its end; verdicts stand in the table of points."""
-    failed_steps = any(step.status == "failed" for step in result.steps)
-    is_broken = result.outcome in ("error", "invalid")
-    return causes(replace(result, verdicts=())) if failed_steps or is_broken else []
-
-
-def _pictures(folder: Path) -> list[tuple[str, str]]:
-    """Name and content of a few pictures: those that explain failures, then the last steps."""
-    files = sorted(folder.glob("*.jpg"))
+def _pictures(own: Path) -> list[tuple[str, str, str]]:
+    """Name, address and content of a few pictures: those that explain failures, the last steps."""
+    files = sorted(Path(own, RUN, "images").glob("*.jpg"))
     chosen = [each for each in files if each.stem.startswith("finding-")]
     chosen += [each for each in files if each.stem.endswith("-why")]
     chosen += [each for each in reversed(files) if each not in chosen]
     return [
-        (each.stem, f"data:image/jpeg;base64,{base64.b64encode(each.read_bytes()).decode()}")
+        (
+            each.stem,
+            quote(each.relative_to(own).as_posix()),
+            f"data:image/jpeg;base64,{base64.b64encode(each.read_bytes()).decode()}",
+        )
         for each in sorted(chosen[:MOST_PICTURES])
         if not each.is_symlink() and each.stat().st_size < LARGEST_PICTURE
     ]

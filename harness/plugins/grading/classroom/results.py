@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
+from pathlib import Path
 
 from harness.core.amounts import stated_amount
 from harness.core.errors import Problem, SpecError
+from harness.judging.expectation import Expectation
 from harness.judging.placed import describe
 from harness.language.expectation import ExpectationFields
+from harness.language.files.source import Source
+from harness.language.files.yaml_file import parse_yaml
 from harness.language.reading.load import load_scenario
 from harness.plugins.grading.assignment import LoadedAssignment
 from harness.plugins.grading.classroom.submissions import Submission
@@ -29,10 +33,12 @@ class Criterion:
     Attributes:
         text: The expectation in the file's words.
         points: The points of all cases together.
+        advice: What a student can do where it does not hold; empty where nothing general is known.
     """
 
     text: str
     points: float
+    advice: str = ""
 
 
 @dataclass(frozen=True)
@@ -191,7 +197,7 @@ def criteria_of(loaded: LoadedAssignment, results: Sequence[CaseResult]) -> tupl
     if loaded.scenario is None:
         worth = {v.expectation: v.points or 0.0 for result in results for v in result.verdicts}
         worth = worth or {"the function can be called": 1.0}
-        return _scaled(list(worth.items()), loaded.model.points)
+        return _scaled([(text, points, "") for text, points in worth.items()], loaded.model.points)
     read = load_scenario(loaded.scenario)
     scenario = read.scenario
     for index, step in enumerate(scenario.steps):
@@ -204,10 +210,10 @@ def criteria_of(loaded: LoadedAssignment, results: Sequence[CaseResult]) -> tupl
                 )
     has_points = any(each.points is not None for each in scenario.expect)
     rows = [
-        (each.name or text, (each.points or 0.0) if has_points else 1.0)
+        (each.name or text, (each.points or 0.0) if has_points else 1.0, _advice(each))
         for each, text in zip(scenario.expect, _texts(scenario.expect, results), strict=True)
     ]
-    if not sum(points for _, points in rows):
+    if not sum(points for _, points, _ in rows):
         problem = Problem(str(loaded.scenario), 0, 0, "no expectation of the file has points")
         raise SpecError([problem])
     whole = scenario.points if not has_points else None
@@ -223,10 +229,23 @@ def _texts(
     return next(whole, None) or [describe(each) for each in expectations]
 
 
-def _scaled(rows: Sequence[tuple[str, float]], whole: float | None) -> tuple[Criterion, ...]:
-    total = sum(points for _, points in rows)
+@cache
+def advice() -> Mapping[str, str]:
+    """What a student can do, by the word of an expectation, or `never` and the word within it."""
+    text = Path(__file__).with_name("advice.yaml").read_text(encoding="utf-8")
+    return parse_yaml(text, Source.of_text("advice.yaml", text)).plain()
+
+
+def _advice(expectation: ExpectationFields) -> str:
+    inner = expectation.predicates() if isinstance(expectation, Expectation) else {}
+    words = [each.word for each in inner.values()] or [expectation.word]
+    return advice().get(f"never {words[0]}" if expectation.word == "never" else words[0], "")
+
+
+def _scaled(rows: Sequence[tuple[str, float, str]], whole: float | None) -> tuple[Criterion, ...]:
+    total = sum(points for _, points, _ in rows)
     factor = 1.0 if whole is None else whole / total
-    return tuple(Criterion(text, points * factor) for text, points in rows)
+    return tuple(Criterion(text, points * factor, hint) for text, points, hint in rows)
 
 
 def graded_run(
