@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from statistics import NormalDist
 from typing import Any, Literal
 
 from harness.core.printable import counted
@@ -45,6 +47,14 @@ class SuccessRate:
     redraws: int = 0
     invalid: int = 0
     is_one_run: bool = False
+
+    @property
+    def more(self) -> int:
+        """How many more samples decide an open rate if as many of them pass; 0: no number does."""
+        required, gap = self.at_least or 0.0, self.passed / self.total - (self.at_least or 0.0)
+        z = NormalDist().inv_cdf(0.5 + self.confidence / 2)
+        needed = required * (1 - required) * (z / gap) ** 2 if gap else 0.0  # Wilson's interval
+        return max(0, math.ceil(needed) - self.total)
 
 
 @dataclass(frozen=True)
@@ -112,7 +122,7 @@ def rate_text(name: str, rate: SuccessRate) -> str:
         line += {
             "shown": f": {required} is confirmed",
             "refuted": f": {required} is refuted",
-            "open": f": {required} is not confirmed: take more samples, or require less",
+            "open": f": {required} is undecided: {_way_out(rate)}",
         }[rate.verdict]
     if rate.stopped_early:
         line += "; the sequential test needed no more"
@@ -123,6 +133,13 @@ def rate_text(name: str, rate: SuccessRate) -> str:
         line += f"; {rate.redrawn} were drawn again, {rate.redraws} times in all,"
         line += " because objects overlapped at the start"
     return line
+
+
+def _way_out(rate: SuccessRate) -> str:
+    """What decides a rate that these samples do not."""
+    if not rate.more:
+        return "as many pass as are required; take many more samples, or require less"
+    return f"if as many pass, {counted(rate.more, 'more sample')} would decide it, or require less"
 
 
 def short_value(value: Any) -> str:

@@ -1,5 +1,7 @@
 """A suite's page in a real browser, opened from disk."""
 
+import platform
+import re
 import shlex
 import weakref
 from dataclasses import replace
@@ -11,12 +13,22 @@ import pytest
 from harness.cli.main import main
 from harness.core.lazy import LazySequence
 from harness.reporting.result import StepLine
+from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.page import MOST_PLAIN_ROWS, MOST_ROWS, suite_html
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
 from tests.reporting.browser import wait_for
-from tests.reporting.suites import STUCK, failed, large_suite, passed, small_suite
+from tests.reporting.suites import (
+    INVALID,
+    STUCK,
+    failed,
+    large_suite,
+    passed,
+    small_suite,
+    verdict,
+)
+from tests.suite.samples import rate_of
 
 
 @pytest.fixture(scope="module")
@@ -135,6 +147,77 @@ def test_bars_show_the_share_of_the_allowance_that_was_used(small, visit):
     assert widths == ["83%", "100%"]
 
 
+def near(used):
+    """A case of a limit of 50 mm of which a share was used."""
+    return SuiteCase(replace(passed(int(100 * used)), verdicts=(verdict(0.05 / used),)))
+
+
+def test_a_bar_warns_from_nine_tenths_of_the_allowance(tmp_path, visit):
+    cases = [near(used) for used in (0.5, 0.88, 0.91, 1.0)]
+    page = visit(write_suite(tmp_path, SuiteRecord("passed", cases), 0)[0], "#sort=number").page
+    bars = page.locator(".bar i").evaluate_all("bars => bars.map((bar) => bar.className)")
+    assert bars == ["good", "good", "warn", "warn"]
+    said = page.locator(".bar").evaluate_all("bars => bars.map((bar) => bar.title)")
+    assert [each.endswith(": nearly all of it") for each in said] == [False, False, True, True]
+
+
+def test_a_row_without_a_bar_says_why(tmp_path, visit):
+    of_zero = replace(verdict(0.06).measures[0], limit=0.0)
+    turned = replace(verdict(0.06), expectation="turned by 30.0 deg", measures=(of_zero,))
+    results = [
+        replace(passed(0), verdicts=()),
+        replace(passed(1), verdicts=(turned,)),
+        STUCK,
+        replace(STUCK, verdicts=(verdict(0.06),)),
+        INVALID,
+    ]
+    record = SuiteRecord("failed", [SuiteCase(each) for each in results])
+    page = visit(write_suite(tmp_path, record, 1)[0], "#sort=number").page
+    said = [each.replace("\n", " ") for each in page.locator("td.nearest").all_inner_texts()]
+    assert said == [
+        "expects nothing",
+        "10.0 mm (no bar: its limit is 0) turned by 30.0°",
+        "expects nothing",
+        "a step failed; what was judged holds",
+        "not judged",
+    ]
+
+
+def test_the_page_says_when_from_what_and_where_it_was_made(small, visit):
+    said = visit(small).text("#made")
+    assert re.search(r"^20\d\d-\d\d-\d\d \d\d:\d\d UTC · (commit [0-9a-f]{10} · )?armharness", said)
+    assert f"Python {platform.python_version()} · {platform.system()} " in said
+    assert "--history DIR" not in said
+
+
+def test_what_passed_is_said_in_the_title_and_at_its_filter(tmp_path, visit):
+    cases = [SuiteCase(passed(i)) for i in range(3)]
+    page = visit(write_suite(tmp_path, SuiteRecord("passed", cases), 0)[0]).page
+    shown = page.evaluate("document.body.innerText.match(/passed/g).length")
+    hidden = page.locator("tr.case .hidden").all_inner_texts()
+    assert shown - len(hidden) == 2
+    assert hidden == ["passed"] * 3, "for who hears the page"
+    assert "--history DIR" in page.inner_text("#made")
+
+
+@pytest.mark.parametrize(
+    ("good", "verdict_of_rate", "sign"), [(19, "open", "open"), (10, "refuted", "failed")]
+)
+def test_a_rate_that_is_undecided_is_amber_and_says_what_decides_it(
+    tmp_path, visit, good, verdict_of_rate, sign
+):
+    cases = [SuiteCase(passed(i) if i < good else failed(i, 0.04), {"x": i}) for i in range(24)]
+    rate = rate_of([i < good for i in range(24)], 0.85, 0.95, stop_early=False)
+    assert rate.verdict == verdict_of_rate
+    rates = [SampledRate("a/pick.scenario.yaml", "", rate, "failed")]
+    page = visit(write_suite(tmp_path, SuiteRecord("failed", cases, rates), 1)[0]).page
+    assert page.locator(f"h1 .sign.{sign}").count() == page.locator(f".rate.{sign}").count() == 1
+    color = "each => getComputedStyle(each, '::before').color"
+    name = page.locator(".rate b").evaluate("each => getComputedStyle(each).color")
+    assert name == page.locator("h1 .sign").evaluate(color)
+    assert ("more samples would decide it" in page.inner_text(".rate")) is (sign == "open")
+
+
 def test_filters_search_and_address(small, visit):
     page = visit(small).page
     page.click("button[data-outcome=failed]")
@@ -176,7 +259,7 @@ def test_sorted_by_worst_margin_and_grouped_by_cause(small, visit):
 
 def test_a_rate_leads_to_its_samples(small, visit):
     page = visit(small).page
-    page.click(".rate.failed")
+    page.click(".rate")
     assert sorted(names(page)) == ["c0", "c1"]
 
 

@@ -97,3 +97,20 @@ def test_a_rate_that_is_not_required_is_not_counted_as_unconfirmed(outcomes):
     assert "no rate is required (`expect_rate`), so every one must pass" in rate_text("a", rate)
     both = missed([free, SampledRate("b.yaml", "", required, "failed")])
     assert both == "1 of 1 success rates not confirmed"
+
+
+@pytest.mark.parametrize("passed", [19, 21, 22, 23])
+def test_as_many_more_samples_as_are_named_decide_an_open_rate(passed):
+    outcomes = [number < passed for number in range(24)]
+    rate = rate_of(outcomes, 0.85, 0.95, stop_early=False)
+    assert rate.verdict == "open"
+    assert f"{rate.more} more samples would decide it" in rate_text("a", rate)
+    for count, is_decided in ((24 + rate.more, True), (24 + rate.more - 1, False)):
+        low, high = wilson_interval(count * passed / 24, count, 0.95)
+        assert (low >= 0.85 or high <= 0.85) is is_decided
+
+
+def test_no_number_of_samples_decides_a_rate_that_is_the_required_one():
+    rate = rate_of([True] * 3 + [False], 0.75, 0.95, stop_early=False)
+    assert rate.more == 0
+    assert "as many pass as are required" in rate_text("a", rate)

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import base64
+import os
+import platform
+import shutil
+import subprocess
+from datetime import UTC, datetime
 from pathlib import Path
 
+from harness.core.versions import library_versions
 from harness.reporting.html import bundle
 from harness.reporting.html.packing import Packer
 from harness.reporting.sampled import missed, rate_text
@@ -60,8 +66,9 @@ def suite_html(
         plain=[(each, _link(each, folder)) for each in plain],
         data=packer.text({"rows": [rows[i] for i in sorted(rows)], "history": bool(history)}),
         has_history=bool(history),
-        wall=duration_text(record.wall),
-        of_cases=duration_text(sum(each["wall"] for each in rows.values())),
+        wall=record.wall,
+        of_cases=sum(each["wall"] for each in rows.values()),
+        made=_made(),
         unlisted=total - len(rows),
     )
 
@@ -79,13 +86,16 @@ def _replay(name: str, case: SuiteCase, folder: Path) -> dict[str, str]:
     return {"name": name, "outcome": case.result.outcome, "link": link, "picture": encoded}
 
 
-def duration_text(seconds: float) -> str:
-    """A wall time: `8.2 s`, `3 min 20 s`, `1 h 05 min`; empty where none is known."""
-    if seconds < 60:
-        return f"{seconds:.1f} s" if seconds else ""
-    if seconds < 3600:
-        return f"{seconds // 60:.0f} min {seconds % 60:.0f} s"
-    return f"{seconds // 3600:.0f} h {seconds % 3600 // 60:02.0f} min"
+def _made() -> list[str]:
+    """When, from which commit of this folder, with what and where a page is made."""
+    commit = ""
+    if shutil.which("git"):
+        command = ["git", "rev-parse", "--short=10", "HEAD"]
+        commit = subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
+    machine = f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors"
+    program = f"armharness {library_versions()['armharness']}, Python {platform.python_version()}"
+    made = [f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", commit and f"commit {commit}"]
+    return [*filter(None, made), program, machine]
 
 
 def _read(name: str) -> str:

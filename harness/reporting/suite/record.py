@@ -33,12 +33,14 @@ class SuiteCase:
 
     Attributes:
         values: What varies, path -> value.
+        again: The words of the command that shows it again; None: those of its file and case.
     """
 
     result: CaseResult
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     tags: tuple[str, ...] = ()
     verifies: tuple[str, ...] = ()
+    again: tuple[str, ...] | None = None
 
     @cached_property
     def nearest(self) -> Verdict | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -19,7 +18,6 @@ from harness.reporting.suite.record import SuiteCase, link_from
 from harness.reporting.terminal import causes, failure_place
 
 NO_MARGIN = 9.0  # a share that sorts after every margin, which is 1 at most
-SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
 MOST_PICTURES = 100  # of failed cases; at 4 kB each, the page grows by less than 0.5 MB
 PICTURE_WIDTH = 200  # [pixels], twice what is shown, for screens of high density
 
@@ -50,6 +48,8 @@ def row_facts(
         "why": " ".join(cause.text.split()) if cause else "",
         "details": causes(result) if cause else [],
         "case": result.case,
+        "again": case.again,
+        "expects": len(result.verdicts),
         "report": result.report_dir,
         "pages": [
             {"name": Path(page).stem.replace("_", " "), "link": link_from(folder, page)}
@@ -67,7 +67,7 @@ def row_facts(
         "seed": result.seed,
         "digest": result.digest[:12],
         "words": " ".join([*words, cause.text if cause else ""]).lower(),
-        "trend": _trend([*earlier, None if nearest is None else case.share]),
+        "shares": [*earlier, None if nearest is None else case.share],
         "picture": _picture(result, number, packer),
     }
 
@@ -78,24 +78,3 @@ def _picture(result: CaseResult, number: int, packer: Packer) -> str:
         return ""
     picture = deciding_picture(result, PICTURE_WIDTH)
     return packer.add(f"case.{number}", picture) if picture else ""
-
-
-def _trend(shares: Sequence[float | None]) -> dict[str, str] | None:
-    """Worst margins over runs as a line and in words; None where there are too few.
-
-    An expectation flips in the middle of the height. Heights are square roots: what happens near
-    the middle is what matters.
-    """
-    known = [(index, share) for index, share in enumerate(shares) if share is not None]
-    if len(known) < 2:
-        return None
-    step = SPARK_WIDTH / (len(shares) - 1)
-    points = " ".join(
-        f"{index * step:.1f},{SPARK_HEIGHT * (1 - _root(share)) / 2:.1f}" for index, share in known
-    )
-    text = f"worst margin in {len(known)} runs, now {known[-1][1]:.0%} of its limit"
-    return {"text": text, "points": points}
-
-
-def _root(share: float) -> float:
-    return math.copysign(math.sqrt(abs(share)), share)

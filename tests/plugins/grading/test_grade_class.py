@@ -140,7 +140,7 @@ def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_s
         ("constant", "Everything holds in the case that you see", "→ Take what varies from"),
         ("typo", "Line 5 of your file", "→ Did you mean `move_to`?"),
         ("moves", "`inject` changes the scene", "→ Leave the step out"),
-        ("broken", "cannot be graded", "→ Hand in what the exercise asks for"),
+        ("broken", "cannot be graded", "→ Hand in what the exercise requires"),
         ("perfect", "", "→ Every expectation holds"),
     ],
 )

@@ -207,12 +207,13 @@ def _first(keys: Iterable[tuple[str, str]], expectation: str) -> int:
 
 def _histogram(expectation: str, unit: str, values: FloatArray) -> Histogram:
     low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
-    failed = int((values < 0).sum())
-    text = (
-        f"{len(values)} margins from {amount(values.min(), unit)} to {amount(values.max(), unit)},"
-        f" median {amount(float(np.median(values)), unit)}; {failed} below zero"
-    )
-    bars, zero = list(_bars(values, low, high)), WIDTH * -low / (high - low)
+    span = f"from {amount(values.min(), unit)} to {amount(values.max(), unit)}, median"
+    if is_alike := bool(np.ptp(values) == 0):
+        span = "all"
+    text = f"{len(values)} margins, {span} {amount(float(np.median(values)), unit)};"
+    text += f" {int((values < 0).sum())} below zero"
+    bars = [] if is_alike else list(_bars(values, low, high))
+    zero = WIDTH * -low / (high - low)
     return Histogram(expectation, text, bars, zero, amount(low, unit), amount(high, unit))
 
 

@@ -17,7 +17,7 @@ from harness.plugins.campaigns.failure_search.explore import FailureRate
 from harness.plugins.campaigns.failure_search.search import Failure, SearchResult
 from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, SuccessRate
+from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import FailingChange, SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite_page
@@ -137,13 +137,20 @@ def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
     Raises:
         HarnessError: A file cannot be written.
     """
-    values, nominal = found.space.values, replace(written.nominal, case="nominal")
-    unchanged = SuiteCase(nominal, values(found.nominal.point))
+    values = found.space.values
+    unchanged = SuiteCase(written.nominal, values(found.nominal.point))
     failing = [
         SuiteCase(_reported(each), values(each.failure.nearest.point)) for each in written.failures
     ]
-    runs = [SuiteCase(each.result, values(each.point)) for each in found.exploration.samples]
-    cases = [unchanged, *runs, *failing]
+    repeated = {
+        each.result.case: ("run", str(failure.file))
+        for failure in written.failures
+        for each in failure.failure.samples
+    }
+    cases = [
+        SuiteCase(each.result, values(each.point), again=repeated.get(each.result.case, ()))
+        for each in found.exploration.samples
+    ]
     changes = [
         FailingChange(
             changed(found, each.failure.nearest),
@@ -169,7 +176,9 @@ def _title(found: SearchResult) -> str:
         return f"{name} fails unchanged"
     if not found.failures:
         return f"{name}: no failure in {counted(runs, 'run')}"
-    return f"{name}: {counted(len(found.failures), 'way')} to fail in {counted(runs, 'run')}"
+    failed = sum(each.result.outcome != "passed" for each in found.exploration.samples)
+    ways = counted(len(found.failures), "way")
+    return f"{name}: {failed} of {counted(runs, 'run')} failed, in {ways}"
 
 
 def is_failing(found: SearchResult) -> bool:
@@ -188,24 +197,16 @@ def _reported(written: WrittenFailure) -> CaseResult:
 def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
     """The share that passes, as the pages of suites show rates."""
     stated = found.variation
+    tally = Tally(stated.at_least, stated.confidence, stop_early=False)
+    for each in found.exploration.start:
+        tally.add(each.result.outcome == "passed", each.result.digest)
+    shown = tally.rate(tally.total)
     if stated.at_least is None:
-        shown = SuccessRate(
-            rate.total - rate.failed,
-            rate.total,
-            1 - rate.high,
-            1 - rate.low,
-            rate.confidence,
-            None,
-            "refuted" if found.failures else "shown",
-        )
-    else:
-        tally = Tally(stated.at_least, stated.confidence, stop_early=False)
-        for each in found.exploration.start:
-            tally.add(each.result.outcome == "passed", each.result.digest)
-        shown = tally.rate(tally.total)
+        shown = replace(shown, low=1 - rate.high, high=1 - rate.low, confidence=rate.confidence)
+        shown = replace(shown, verdict="refuted" if found.failures else "shown")
     return SampledRate(
         str(found.request.file),
-        "low-discrepancy samples",
+        f"the first {rate.total} runs, which cover the ranges evenly",
         shown,
         "passed" if shown.verdict == "shown" else "failed",
     )

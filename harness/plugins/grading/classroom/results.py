@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
+from typing import cast
 
 from harness.core.amounts import stated_amount
 from harness.core.errors import Problem, SpecError
@@ -233,7 +234,7 @@ def _texts(
 def advice() -> Mapping[str, str]:
     """What a student can do, by the word of an expectation, or `never` and the word within it."""
     text = Path(__file__).with_name("advice.yaml").read_text(encoding="utf-8")
-    return parse_yaml(text, Source.of_text("advice.yaml", text)).plain()
+    return cast("Mapping[str, str]", parse_yaml(text, Source.of_text("", text)).plain())
 
 
 def _advice(expectation: ExpectationFields) -> str:

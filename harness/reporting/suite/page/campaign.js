@@ -5,8 +5,6 @@ import { drawFrame, frameOf } from "./map_frame.js";
 import { cellAt, drawRate } from "./map_rate.js";
 import { causeColor, dotAt, drawRing, drawRuns } from "./map_runs.js";
 
-const NOTHING = "Point at a run to read its values.";
-
 /** Draw the map where the page has one. */
 export function drawCampaign() {
   const section = document.getElementById("map");
@@ -15,6 +13,8 @@ export function drawCampaign() {
   const canvas = section.querySelector("canvas"), caption = section.querySelector("output"), legend = section.querySelector(".legend");
   const [across, up, kind] = ["x", "y", "kind"].map((name) => section.querySelector(`select[name=${name}]`));
   const count = data.parameters.length, columns = { cause: count + 1, name: count + 2, link: count + 3 };
+  const opened = data.points.filter((point) => point[columns.link]).length;
+  const nothing = `Point at a run to read its values. ${opened === data.points.length ? "A click opens it." : opened ? `A click opens one of the ${opened} with a report, in a ring, and shows the row of another one; --keep all writes every report.` : "A click shows its row: no run has a report, which --keep all writes."}`;
   let dots = [], cells = [], marked = null;
 
   for (const select of [across, up]) axes.forEach((axis) => select.add(new Option(axis.label, axis.index)));
@@ -30,7 +30,7 @@ export function drawCampaign() {
     drawFrame(pen, frame);
     const hasCells = kind.value === "rate";
     cells = hasCells ? drawRate(pen, frame, points, columns.cause, data.weights) : [];
-    dots = hasCells ? [] : drawRuns(pen, frame, points, columns.cause);
+    dots = hasCells ? [] : drawRuns(pen, frame, points, columns);
     const ringed = dots.find(({ point }) => point === marked);
     if (ringed) drawRing(pen, ringed);
     legend.replaceChildren(...legendOf(data, points, columns.cause));
@@ -41,7 +41,7 @@ export function drawCampaign() {
     const cell = cellAt(cells, ...place);
     marked = dotAt(dots, ...place)?.point ?? null;
     canvas.style.cursor = marked ? "pointer" : "";
-    caption.textContent = cell ? `${Math.round(cell.failed)} of ${Math.round(cell.all)} runs failed` : marked ? valuesOf(data, axes, marked, columns) : NOTHING;
+    caption.textContent = cell ? `${Math.round(cell.failed)} of ${Math.round(cell.all)} runs failed` : marked ? valuesOf(data, axes, marked, columns) : nothing;
     draw();
   });
   canvas.addEventListener("keydown", (event) => {
@@ -59,7 +59,7 @@ export function drawCampaign() {
   new ResizeObserver(draw).observe(canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
   section.hidden = false;
-  caption.textContent = NOTHING;
+  caption.textContent = nothing;
   draw();
 }
 

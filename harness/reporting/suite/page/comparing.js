@@ -2,9 +2,11 @@
 
 import { element } from "./dom.js";
 
-/** @param {any} row @returns {HTMLElement} what runs it again */
-export function runCommand({ file, case: name }) {
-  return command(["harness", "run", file, ...(name ? ["--case", name] : [])]);
+/** @param {any} row @returns {(HTMLElement | string)[]} what runs it again; of a run of a search what shows the same failure, if it failed */
+export function runCommand({ file, case: name, again, link }) {
+  const words = ["harness", ...(again ?? ["run", file, ...(name ? ["--case", name] : [])])];
+  if (again) return again.length ? ["the smallest change that fails in this way: ", command(words)] : [];
+  return [link ? "" : "no report was kept; this writes one: ", command(words)];
 }
 
 /** @param {any} row @param {any[]} rows of the page @returns {HTMLElement | null} a button that opens the choice of another case; null where a run is missing */

@@ -13,8 +13,9 @@ export function causeColor(cause) {
   return color(cause < 0 ? "--good" : CAUSE_COLORS[cause % CAUSE_COLORS.length]);
 }
 
-/** Draw the runs, those that passed first; words are spread a little. @returns {Dot[]} */
-export function drawRuns(pen, frame, points, causeColumn) {
+/** Draw the runs, those that passed first, in a ring where they have a report and others have none; words are spread a little. @returns {Dot[]} */
+export function drawRuns(pen, frame, points, { cause: causeColumn, link }) {
+  const hasRings = points.some((point) => !point[link]);
   const spread = (axis, index) => axis.words.length ? ((index * 0.618) % 1 - 0.5) * 0.5 : 0;
   const dots = points.map((point, index) => ({
     x: frame.x(point[frame.across.index] + spread(frame.across, index)),
@@ -26,6 +27,9 @@ export function drawRuns(pen, frame, points, causeColumn) {
     pen.fillStyle = causeColor(point[causeColumn]);
     pen.globalAlpha = isFailed ? 0.95 : points.length > MANY ? 0.25 : 0.5;
     pen.beginPath(); pen.arc(x, y, isFailed ? 4 : 3, 0, 7); pen.fill();
+    if (!hasRings || !point[link]) continue;
+    pen.strokeStyle = pen.fillStyle; pen.lineWidth = 1.5;
+    pen.beginPath(); pen.arc(x, y, 6.5, 0, 7); pen.stroke();
   }
   pen.globalAlpha = 1;
   return dots;

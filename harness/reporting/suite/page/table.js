@@ -4,6 +4,7 @@ import { comparing, runCommand } from "./comparing.js";
 import { element } from "./dom.js";
 import { outcomeBar } from "./query.js";
 
+const NEARLY_USED = 90; // [%] of an allowance, from which a bar warns
 const STRETCH = 100; // rows that are made at a time: two screens of them
 
 /** @param {import("./payload.js").Payload} payload */
@@ -56,14 +57,14 @@ export function startTable(payload) {
     const name = row.link ? element("a", { href: row.link }, shown) : shown;
     const still = row.picture && element("img", { src: picture(row.picture), alt: `the moment that decided ${row.name}`, loading: "lazy" });
     const made = element(`tr.case`, { "data-outcome": row.outcome, "data-share": row.share },
-      element("td", {}, element(`i.sign.${row.outcome}`), element("span.quiet", {}, row.outcome)),
+      element("td", {}, element(`i.sign.${row.outcome}`), element(row.outcome === "passed" ? "span.hidden" : "span.quiet", {}, row.outcome)),
       element("td.still", {}, row.link && still ? element("a", { href: row.link, tabindex: -1 }, still) : still),
       element("td.about", {},
         element("span.title", {}, name, ...(isOneFile ? [] : row.tags).map((tag) => element("span.tag", {}, tag))),
         element("div.quiet", {}, ...(isOneFile ? [] : breakable(row.file)), ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
         row.why && why(row)),
-      element("td.nearest", {}, ...(hasNearest(row) ? [allowance(row), element("div.quiet", {}, row.expectation)] : [])),
-      payload.run.history && element("td.history", {}, row.trend && spark(row.trend)),
+      element("td.nearest", {}, ...(hasNearest(row) ? [allowance(row), element("div.quiet", {}, inDegrees(row.expectation))] : [element("span.quiet", {}, withoutNearest(row))])),
+      payload.run.history && element("td.history", {}, spark(row.shares)),
       element("td.number", { title: `${row.simulated.toFixed(1)} s simulated` }, row.wall ? `${row.wall.toFixed(1)} s` : "–"));
     return made;
   }
@@ -71,13 +72,13 @@ export function startTable(payload) {
   /** The cause in a line; a click shows everything that is known. */
   function why(row) {
     if (!row.why) return element("details.more-of", {}, element("summary", { "aria-label": `details of ${row.name}` }, "details"), facts(row));
-    return element("details.why", {}, element("summary", {}, row.why),
-      ...row.details.map((text) => element("pre", {}, text)), facts(row));
+    return element("details.why", {}, element("summary", {}, inDegrees(row.why)),
+      ...row.details.map((text) => element("pre", {}, inDegrees(text))), facts(row));
   }
 
   function facts(row) {
     return element("div.facts", {}, `simulated ${row.simulated.toFixed(2)} s · seed ${row.seed}`,
-      row.digest && ` · digest ${row.digest}`, " · ", runCommand(row), comparing(row, payload.run.rows));
+      row.digest && ` · digest ${row.digest}`, " · ", ...runCommand(row), comparing(row, payload.run.rows));
   }
 
   return { show: watched(more, extend, show) };
@@ -94,23 +95,46 @@ function hasNearest({ margin, holds, outcome }) {
   return margin && (holds === (outcome === "passed"));
 }
 
-/** How much of the allowance was used, and the margin. */
-function allowance(row) {
-  const tone = row.holds ? "good" : "bad";
-  if (row.used === null) return element("span.number", {}, row.margin);
-  const percent = Math.round(100 * row.used), text = `${percent} % of the allowance used`;
-  return element("span", {},
-    element("span.bar", { role: "img", "aria-label": text, title: text },
-      element(`i.${tone}`, { style: `width:${Math.min(100, Math.max(2, percent))}%` })),
-    element("span.number", {}, row.margin));
+/** Why a row says nothing of a margin. */
+function withoutNearest({ outcome, expects, margin }) {
+  if (outcome === "invalid" || outcome === "error") return "not judged";
+  if (!expects) return "expects nothing";
+  return outcome === "failed" && margin ? "a step failed; what was judged holds" : "judged without a margin";
 }
 
-function spark({ text, points }) {
+/** Angles as the pages of runs show them. @param {string} text */
+function inDegrees(text) {
+  return text.replace(/(?<=[\d)]) deg\b/g, "°");
+}
+
+/** How much of the allowance was used, and the margin. */
+function allowance(row) {
+  const margin = element("span.number", {}, inDegrees(row.margin));
+  if (row.used === null) return element("span", {}, margin, element("span.quiet", {}, " (no bar: its limit is 0)"));
+  const percent = Math.round(100 * row.used);
+  const tone = !row.holds ? "bad" : percent >= NEARLY_USED ? "warn" : "good";
+  const text = `${percent} % of the allowance used${tone === "warn" ? ": nearly all of it" : ""}`;
+  return element("span", {},
+    element("span.bar", { role: "img", "aria-label": text, title: text },
+      element(`i.${tone}`, { style: `width:${Math.min(100, Math.max(2, percent))}%` })), margin);
+}
+
+/**
+ * Worst margins over runs, as shares of their limits; null where there are fewer than two. An expectation
+ * flips in the middle of the height. Heights are square roots: what happens near the middle is what matters.
+ *
+ * @param {(number | null)[]} shares
+ */
+function spark(shares) {
+  const known = [...shares.entries()].filter(([, share]) => share !== null);
+  if (known.length < 2) return null;
   const make = (name, properties) => {
     const made = document.createElementNS("http://www.w3.org/2000/svg", name);
     for (const [key, value] of Object.entries(properties)) made.setAttribute(key, value);
     return made;
   };
+  const text = `worst margin in ${known.length} runs, now ${Math.round(100 * known.at(-1)[1])}% of its limit`;
+  const points = known.map(([index, share]) => `${90 * index / (shares.length - 1)},${10 * (1 - Math.sign(share) * Math.sqrt(Math.abs(share)))}`).join(" ");
   const svg = make("svg", { class: "spark", role: "img", "aria-label": text, viewBox: "-2 -2 94 24", width: 90, height: 20 });
   svg.append(make("line", { x1: 0, x2: 90, y1: 10, y2: 10 }), make("polyline", { points }));
   return svg;
