@@ -10,7 +10,7 @@ import pytest
 
 from docs import ROOT
 from harness.core.socket_folder import socket_parent
-from harness.plugins.iktest import IkTest, run_ik_test
+from harness.plugins.iktest import IkTest, run_ik_test, solver
 from harness.plugins.iktest.contract import UnusableSolver
 from harness.plugins.iktest.solver import PREFIX, Isolated
 from harness.robot.robot_source import RobotSource
@@ -74,21 +74,28 @@ def ik(x, y, z):
     [compute, lambda: np.linalg.svd(np.zeros((3000, 3000))), lambda: time.sleep(6000),
      lambda: time.sleep(0.4)][x]()
 """
+DELAYED = ("compute", "matrix", "sleep", "doze")
 
 
-def test_processor_time_decides_what_hangs_unless_it_waits_much_longer(tmp_path):
+@pytest.mark.parametrize(
+    ("calls", "waiting_limit", "texts"),
+    [
+        (("compute", "matrix"), 1000.0, ["no answer in 0.3 s of processor time"] * 2),
+        (("sleep", "doze"), 10.0, ["no answer in 3 s", ""]),
+    ],
+)
+def test_processor_time_decides_what_hangs_unless_it_waits_much_longer(
+    tmp_path, monkeypatch, calls, waiting_limit, texts
+):
+    monkeypatch.setattr(solver, "WAITING_LIMIT", waiting_limit)
     (tmp_path / "mine.py").write_text(DELAYS)
-    solver = Isolated(f"{tmp_path / 'mine.py'}:ik", RobotSource(OM), "", 4, patience=0.3)
+    isolated = Isolated(f"{tmp_path / 'mine.py'}:ik", RobotSource(OM), "", 4, patience=0.3)
     try:
-        outcomes = [solver({"x": x, "y": 0.0, "z": 0.0}) for x in range(4)]
+        outcomes = [isolated({"x": DELAYED.index(x), "y": 0.0, "z": 0.0}) for x in calls]
     finally:
-        solver.close()
-    assert [(each.kind, each.text) for each in outcomes] == [
-        ("hung", "no answer in 0.3 s of processor time"),
-        ("hung", "no answer in 0.3 s of processor time"),
-        ("hung", "no answer in 3 s"),
-        ("refused", ""),
-    ]
+        isolated.close()
+    assert [each.text for each in outcomes] == texts
+    assert [each.kind for each in outcomes] == ["hung" if text else "refused" for text in texts]
 
 
 @pytest.mark.nightly
