@@ -10,7 +10,6 @@ from harness.core.types import BoolArray, FloatArray
 from harness.judging.contacts import attached
 from harness.judging.facts import fact
 from harness.judging.hold import gripped
-from harness.judging.poses import present
 from harness.judging.support import carried_by_hand
 from harness.judging.temporal import bridged, episodes
 from harness.judging.window import NotObservable, NotReached, object_record
@@ -67,24 +66,6 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
     if len(objects) == 2 and not any(attached(run, name).any() for name in objects):
         raise NotReached(f"the robot held neither {first} nor {second}")
     raise NotObservable(f"the distance between {first} and {second} was not recorded")
-
-
-def unknown_distances(run: Run, key: Key) -> BoolArray:
-    """Samples at which two bodies have a distance and it is not known, shape (N,).
-
-    The distance exists where both are in the scene, the planning scene holds the first one (unless
-    it is the robot), and the hand does not grip the second.
-    """
-    first, second = key
-    exists: BoolArray = np.isnan(run.signals.clearances[key])
-    if not is_of_robot(run, first):
-        exists &= present(run, first) & attached(run, first)
-    if not is_of_robot(run, second):
-        exists &= present(run, second)
-        if "attachments" not in run.unrecorded:
-            of_arm = run.robot.of_arm.get(first)
-            exists &= ~in_grip(run if of_arm is None else replace(run, robot=of_arm), second)
-    return exists
 
 
 def is_of_robot(run: Run, name: str) -> bool:

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.distances import recorded_distances, unknown_distances
+from harness.judging.distances import recorded_distances
 from harness.judging.window import NotObservable, NotReached
+from harness.plugins.arms.expectations.clearance import unknown_distances
 from tests.judging.synthetic_run import BOX, TABLE, at, attachment, lift_run, make_run, thing
 
 N = 40

@@ -7,7 +7,6 @@ import pytest
 
 from harness.core.geometry import Box
 from harness.core.spatial import SE3
-from harness.judging.distances import unknown_distances
 from harness.judging.excused_force import load_of
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.collision import Collision
@@ -23,7 +22,7 @@ from harness.judging.expectations.within_limits import WithinLimits
 from harness.judging.hold import HOLD_TIME, why_not_between
 from harness.judging.temporal import eventually
 from harness.judging.window import window_of
-from harness.plugins.arms.expectations.clearance import Clearance
+from harness.plugins.arms.expectations.clearance import Clearance, unknown_distances
 from harness.plugins.arms.expectations.named_target import NamedTarget
 from harness.plugins.objects.expectations.displaced import Displaced
 from harness.plugins.objects.expectations.in_ import In

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline as ReferenceSpline
 
-from harness.planning.timing.joint_spline import CubicSpline
+from harness.planning.timing.cubic_spline import CubicSpline
 
 
 @pytest.mark.parametrize("count", [2, 4, 5, 60])

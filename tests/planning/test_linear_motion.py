@@ -9,7 +9,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.cartesian.line_goals import pitched
-from harness.planning.timing.joint_spline import CubicSpline
+from harness.planning.timing.cubic_spline import CubicSpline
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import LinearMotion, RelativeMotion

@@ -13,7 +13,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.linear_path import LinkPath
 from harness.planning.cartesian.tracing import Trace
-from harness.planning.timing.joint_spline import CubicSpline
+from harness.planning.timing.cubic_spline import CubicSpline
 from harness.planning.timing.limits import Limits, sampled_within_limits
 from harness.planning.timing.profiles import GRID, Curve, Trapezoid, smoothed
 from harness.ports.motion_planning import PlanningOptions

@@ -8,7 +8,6 @@ import numpy as np
 
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
-from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.scene import Touch
 
@@ -59,27 +58,6 @@ def touches(items: Sequence[Touch], most: int = MOST_TOUCHES) -> str:
     more = len(items) - most
     rest = f" and {counted_noun(more, 'more pair')}" if more > 0 else ""
     return ", ".join(map(touch, items[:most])) + rest
-
-
-def padding_advice(distance: float, padding: float) -> str:
-    """What to do where the padding alone is in the way."""
-    smaller, stated = distinct(distance, padding, length_text)
-    return (
-        f"nothing touches, only the `padding` of {stated} is not kept: give `planning` a `padding`"
-        f" of less than {smaller}"
-    )
-
-
-def way_out(item: Touch, scene: CoalScene) -> str:
-    """What to change so that the robot, or what it holds, comes apart from the body it is in."""
-    objects = set(scene.object_names()) - set(scene.attached())
-    blocker = next((name for name in (item.second, item.first) if name in objects), None)
-    if blocker is None:
-        return "move the joints so that the links come apart"
-    if scene.is_ground(blocker):
-        depth = length_text(-item.distance)
-        return f"raise the robot's `base`: it reaches {depth} into '{blocker}'"
-    return f"move '{blocker}' out of the way: it is {length_text(-item.distance)} too near"
 
 
 def counted_noun(things: Sized | int, noun: str) -> str:

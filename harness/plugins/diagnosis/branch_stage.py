@@ -14,12 +14,13 @@ from harness.planning.collision.wording import (
     counted_noun,
     joint_value,
     length_text,
-    padding_advice,
     touches,
 )
 from harness.planning.goals.goal_study import GoalStudy
-from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
+from harness.planning.ik.nearest_pose import NearestPose
 from harness.planning.ik.numeric import LinkGoal
+from harness.plugins.diagnosis.free_shift import SHIFTS, nearest_free_shift
+from harness.plugins.diagnosis.motion_stages import padding_advice
 from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.ports.kinematics import IkSolver
 from harness.recording.explanation import FreeShift, NearestState, Stage

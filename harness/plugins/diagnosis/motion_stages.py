@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import touch_records
+from harness.planning.collision.scene import CoalScene
 from harness.planning.collision.wording import (
     angle,
     counted_noun,
-    padding_advice,
+    length_text,
     touch,
     touches,
-    way_out,
 )
 from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest
+from harness.ports.scene import Touch
 from harness.recording.explanation import NearestState, Stage
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import (
@@ -209,3 +211,24 @@ def _path_advice(request: StageRequest, shown: NearestState | None) -> str:
             "shorter, or use `move_to`, which need not keep to the line"
         )
     return ""
+
+
+def padding_advice(distance: float, padding: float) -> str:
+    """What to do where the padding alone is in the way."""
+    smaller, stated = distinct(distance, padding, length_text)
+    return (
+        f"nothing touches, only the `padding` of {stated} is not kept: give `planning` a `padding`"
+        f" of less than {smaller}"
+    )
+
+
+def way_out(item: Touch, scene: CoalScene) -> str:
+    """What to change so that the robot, or what it holds, comes apart from the body it is in."""
+    objects = set(scene.object_names()) - set(scene.attached())
+    blocker = next((name for name in (item.second, item.first) if name in objects), None)
+    if blocker is None:
+        return "move the joints so that the links come apart"
+    if scene.is_ground(blocker):
+        depth = length_text(-item.distance)
+        return f"raise the robot's `base`: it reaches {depth} into '{blocker}'"
+    return f"move '{blocker}' out of the way: it is {length_text(-item.distance)} too near"

@@ -14,12 +14,12 @@ from harness.planning.search.balanced_connect import search_connect
 from harness.planning.search.planner_names import FAST_PLANNER
 from harness.planning.search.shortening import find_shortcut, path_knots, without_repetitions
 from harness.planning.task import PlanningTask
-from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION, Defect
 from harness.plugins.motions.curve_timing import RatedCurve, time_curve
 from harness.plugins.motions.held_constraints import PathBands
+from harness.plugins.motions.joint_spline import JointSpline
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.path_planning import PathRequest, PathResult
 from harness.recording.motion_failures import SearchFailure

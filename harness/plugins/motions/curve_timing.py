@@ -14,11 +14,11 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.planning.cartesian.link_timing import CENTRIPETAL_SHARE, LinkRates
 from harness.planning.model.robot_model import GroupSpace
-from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import Limits, joint_motion, sampled_within_limits
 from harness.planning.timing.profiles import resting
 from harness.planning.timing.toppra_passes import Bounds
 from harness.planning.timing.toppra_solver import fastest
+from harness.plugins.motions.joint_spline import JointSpline
 
 _TINY = 1e-9  # [rad, m per rad] stands for zero, so that nothing is divided by it
 

@@ -20,7 +20,7 @@ from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
 from harness.planning.ik.task import part_of_pose
-from harness.planning.timing.joint_spline import CubicSpline
+from harness.planning.timing.cubic_spline import CubicSpline
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import AdvisedFailure
 

@@ -18,10 +18,10 @@ from harness.planning.cartesian.link_motion import (
 )
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import Trace, off_path
-from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import joined, time_straight
 from harness.plugins.motions.curve_timing import RatedCurve, nearest_knots, time_curve
+from harness.plugins.motions.joint_spline import JointSpline
 from harness.plugins.motions.leg import BlendFailure, Leg, Transition, transition
 from harness.recording.motion_failures import DeviationFailure
 

@@ -11,7 +11,7 @@ from harness.core.types import FloatArray
 from harness.planning.ik.numeric import LinkTask
 from harness.planning.ik.task import part_of_pose
 from harness.planning.task import PlanningTask
-from harness.planning.timing.joint_spline import CubicSpline
+from harness.planning.timing.cubic_spline import CubicSpline
 from harness.planning.timing.profiles import SAMPLE_PERIOD
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.motions import TimedLinkMotion

@@ -18,10 +18,12 @@ from harness.plugins.studio.snapshot import (
     PhysicsState,
     changed_arrays,
     load_state,
+    set_step_state,
+    step_state,
 )
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints
-from harness.simulation.step_state import refresh, set_step_state, step_state, wake
+from harness.simulation.step_state import refresh, wake
 
 CHUNK = 16  # samples between two calls of the pace; the results do not depend on it
 Pace = Callable[[int], bool]  # waits as long as the samples last; whether to go on

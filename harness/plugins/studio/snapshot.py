@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from harness.core.surface_motion import SurfaceMotion
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.ports.joint_control import JointController
 from harness.simulation.set_points import SetPoints
-from harness.simulation.step_state import StepState, refresh, set_step_state
+from harness.simulation.step_state import refresh, wake
 
 CHANGED_IN_PLACE = (
     "geom_contype",
@@ -40,6 +41,33 @@ CHANGED_IN_PLACE = (
 
 OF_FAULTS = ("grip_share", "_stalled", "_deviation", "_latency", "_waiting", "_rng", "noise")
 """Attributes of the active faults."""
+
+STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+"""All that MuJoCo integrates, and the warm start, without which a step differs in its last bits."""
+
+_ARRAYS = (
+    "tree_asleep",
+    "tree_awake",
+    "body_awake",
+    "body_awake_ind",
+    "parent_awake_ind",
+    "dof_awake_ind",
+)
+_COUNTS = ("ntree_awake", "nbody_awake", "nparent_awake", "nv_awake")
+
+
+@dataclass(frozen=True, eq=False)
+class StepState:
+    """All that the next step of a model follows from, besides its controls.
+
+    Attributes:
+        arrays: The trees, bodies and degrees of freedom that are asleep, as `_ARRAYS` lists them.
+        counts: The numbers of those that are awake, as `_COUNTS` lists them.
+    """
+
+    integration: FloatArray
+    arrays: tuple[IntArray, ...]
+    counts: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,3 +112,21 @@ def load_state(model: mujoco.MjModel, data: mujoco.MjData, state: PhysicsState) 
         getattr(model, name)[...] = values
     set_step_state(model, data, state.step)
     refresh(model, data)
+
+
+def step_state(model: mujoco.MjModel, data: mujoco.MjData) -> StepState:
+    """A copy of the current state."""
+    integration = np.empty(mujoco.mj_stateSize(model, STATE))
+    mujoco.mj_getState(model, data, integration, STATE)
+    arrays = tuple(getattr(data, name).copy() for name in _ARRAYS)
+    return StepState(integration, arrays, tuple(getattr(data, name) for name in _COUNTS))
+
+
+def set_step_state(model: mujoco.MjModel, data: mujoco.MjData, state: StepState) -> None:
+    """Go on from a state of the same model."""
+    mujoco.mj_setState(model, data, state.integration, STATE)
+    wake(model, data)
+    for name, values in zip(_ARRAYS, state.arrays, strict=True):
+        getattr(data, name)[:] = values
+    for name, value in zip(_COUNTS, state.counts, strict=True):
+        setattr(data, name, value)

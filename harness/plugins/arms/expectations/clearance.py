@@ -11,15 +11,15 @@ from pydantic import Field
 
 from harness.cell.scope import At
 from harness.core.amounts import amount, amounts
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging.collision import colliding
 from harness.judging.contacts import attached, bodies, shapeless
 from harness.judging.distances import (
     MEASURED_WORDS,
     Key,
+    in_grip,
     is_of_robot,
     recorded_distances,
-    unknown_distances,
 )
 from harness.judging.expectation import Predicate
 from harness.judging.hands import of_arm
@@ -267,3 +267,21 @@ def _nearest_link(window: Window, key: Key, index: int) -> str:
     links = window.run.signals.clearance_links.get(key)
     number = -1 if links is None else int(links[window.start + index])
     return window.run.robot.link_names[number] if number >= 0 else ""
+
+
+def unknown_distances(run: Run, key: Key) -> BoolArray:
+    """Samples at which two bodies have a distance and it is not known, shape (N,).
+
+    The distance exists where both are in the scene, the planning scene holds the first one (unless
+    it is the robot), and the hand does not grip the second.
+    """
+    first, second = key
+    exists: BoolArray = np.isnan(run.signals.clearances[key])
+    if not is_of_robot(run, first):
+        exists &= present(run, first) & attached(run, first)
+    if not is_of_robot(run, second):
+        exists &= present(run, second)
+        if "attachments" not in run.unrecorded:
+            of_arm = run.robot.of_arm.get(first)
+            exists &= ~in_grip(run if of_arm is None else replace(run, robot=of_arm), second)
+    return exists
