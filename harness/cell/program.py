@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
-from harness.cell.controllers import ControllerNames
 from harness.cell.step import Step
 from harness.core.camera import Camera
 from harness.core.world import World, WorldObject
@@ -84,7 +84,7 @@ class Program:
         step_locs: Where each step is written, by its path.
         object_locs: Where each object is written, by name; the world's own are at `world`.
         videos: Cameras that are recorded all through the run, and their frames a second.
-        controllers: The controllers that ROS 2 nodes command.
+        parts: What plug-ins have resolved of the scenario, by their names.
     """
 
     title: str
@@ -98,7 +98,7 @@ class Program:
     object_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     videos: Mapping[str, float] = field(default_factory=dict[str, float])
-    controllers: ControllerNames = field(default_factory=ControllerNames)
+    parts: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     def all_steps(self) -> Iterator[ProgramStep]:
         """Every step of the file, nested ones after the one they are nested in."""

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.cell.controllers import controller_names
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, with_arm
+from harness.cell.program_part import resolved_parts
 from harness.cell.scope import At, Problems, Scope
 from harness.cell.step import Step, as_step
 from harness.core.errors import RobotError
@@ -108,7 +108,7 @@ class _Compiler:
                 check_expectation(as_expectation(expectation), loc, self.scope, step)
         check_cameras(sources.world.world.cameras, scenario.cameras, self.scope)
         videos = check_videos(scenario.videos, self.scope)
-        controllers = controller_names(sources.description, scenario.ros2, self.problems)
+        parts = resolved_parts(scenario, sources.description, self.problems)
         if len(objects) + len(self.later) > MOST_OBJECTS:
             self.problems.add(
                 ("objects",) if scenario.objects else ("world",),
@@ -128,7 +128,7 @@ class _Compiler:
             object_locs=self.object_locs,
             cameras=self.scope.cameras,
             videos=videos,
-            controllers=controllers,
+            parts=parts,
         )
 
     @contextmanager

@@ -40,7 +40,7 @@ class HandOver(ABC):
 
     def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
         self.prepared, self.simulator = prepared, simulator
-        self.cell = ExternalCell(simulator, prepared.program.controllers)
+        self.cell = ExternalCell(simulator, prepared.program.parts["controllers"])
         self.robot = prepared.program.description
         self.scene: ClientScene | None = None
         self._looked = 0

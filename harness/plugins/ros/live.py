@@ -76,7 +76,7 @@ class LiveControl(HandOver):
         self._graph, self._request = graph, request
         self._pace = Pace(request.factor)
         program = prepared.program
-        prefix = Prefix(program.controllers.prefix, self.robot)
+        prefix = Prefix(program.parts["controllers"].prefix, self.robot)
         graph.outward, graph.inward = prefix.outward, prefix.inward
         objects = [each.name for each in program.all_objects()]
         cameras = camera_edges(tuple(program.cameras.values()), self.robot, objects)

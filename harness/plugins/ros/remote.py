@@ -95,7 +95,7 @@ class RemoteArm:
         self._kinematics, self._program = prepared.ports.kinematics, prepared.program
         self.description = self._program.description
         self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
-        names = self._program.controllers
+        names = self._program.parts["controllers"]
         prefix = Prefix(names.prefix, self.description)
         graph.outward, graph.inward = prefix.outward, prefix.inward
         self._states = JointStates(graph, self.description)

@@ -8,7 +8,6 @@ from typing import NoReturn
 
 import numpy as np
 
-from harness.cell.controllers import ControllerNames
 from harness.core.errors import StepFailed
 from harness.core.trajectory import JointTrajectory
 from harness.plugins.ros.actions import ActionClient, ClientGoal, Status
@@ -17,6 +16,7 @@ from harness.plugins.ros.control.goals import Code
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
 from harness.plugins.ros.names import actions
+from harness.plugins.ros.program_parts.controllers import ControllerNames
 from harness.plugins.ros.rtps.graph import Graph
 from harness.recording.execution_failures import ControlFailure
 from harness.robot.description import RobotDescription

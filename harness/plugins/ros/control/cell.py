@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from harness.cell.controllers import ControllerNames
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.plugins.ros.control.controller import Controller, Outcome, Rows, Window
@@ -17,6 +16,7 @@ from harness.plugins.ros.control.gripper import GripperMotion
 from harness.plugins.ros.control.step_response import StepResponse
 from harness.plugins.ros.control.summaries import result_of, summary_of
 from harness.plugins.ros.control.trajectory import follow_result, start_trajectory
+from harness.plugins.ros.program_parts.controllers import ControllerNames
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import TrackingTolerances
 from harness.robot.end_effector import Gripper

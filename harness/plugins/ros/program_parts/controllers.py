@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import ClassVar
 
+from harness.cell.program_part import ProgramPart
 from harness.cell.scope import Problems
-from harness.language.scenario import ControllerKeys, Ros2Names
+from harness.language.scenario import ControllerKeys, Ros2Names, ScenarioContent
 from harness.robot.description import RobotDescription
 
 OWNERS = {"arm_controllers": "the arm's", "gripper_controller": "the gripper's"}
@@ -40,20 +42,25 @@ class ControllerNames:
     prefix: str = ""
 
 
-def controller_names(
-    description: RobotDescription, names: Ros2Names, problems: Problems
-) -> ControllerNames:
-    """The scenario's names, else the robot's, else `<group>_controller` as MoveIt's assistant.
+class Controllers(ProgramPart):
+    """The names under which nodes of ROS 2 reach the controllers of each arm."""
 
-    Every controller needs a name of its own.
-    """
-    robots = description.of_arm or {"": description}
-    given = _given_names(description, names, problems)
-    by_arm = {
-        arm: _of_arm(robot, given.get(arm, ControllerKeys())) for arm, robot in robots.items()
-    }
-    _refuse_clash(by_arm, given, problems)
-    return ControllerNames(by_arm, names.prefix or "")
+    name: ClassVar[str] = "controllers"
+
+    def resolve(
+        self, scenario: ScenarioContent, robot: RobotDescription, problems: Problems
+    ) -> ControllerNames:
+        """The scenario's names, else the robot's, else `<group>_controller` as MoveIt's assistant.
+
+        Every controller needs a name of its own.
+        """
+        given = _given_names(robot, scenario.ros2, problems)
+        by_arm = {
+            arm: _of_arm(each, given.get(arm, ControllerKeys()))
+            for arm, each in (robot.of_arm or {"": robot}).items()
+        }
+        _refuse_clash(by_arm, given, problems)
+        return ControllerNames(by_arm, scenario.ros2.prefix or "")
 
 
 def _given_names(

@@ -1,0 +1,32 @@
+"""What a plug-in resolves of a scenario, with the mistakes that it finds there."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from harness.cell.scope import Problems
+from harness.core.registry import Plugin, registry
+from harness.language.scenario import ScenarioContent
+from harness.robot.description import RobotDescription
+
+
+class ProgramPart(Plugin, ABC):
+    """A part of every program, `Program.parts[name]`, which the same plug-in reads."""
+
+    plugin_kind: ClassVar[str] = "program_part"
+
+    @abstractmethod
+    def resolve(
+        self, scenario: ScenarioContent, robot: RobotDescription, problems: Problems
+    ) -> object:
+        """The part; mistakes of the scenario are added to the problems."""
+
+
+def resolved_parts(
+    scenario: ScenarioContent, robot: RobotDescription, problems: Problems
+) -> Mapping[str, Any]:
+    """The parts of all plug-ins, by their names."""
+    parts = registry(ProgramPart.plugin_kind).items()
+    return {name: part().resolve(scenario, robot, problems) for name, part in parts}
