@@ -1,0 +1,1 @@
+"""What files that are not YAML lack."""
