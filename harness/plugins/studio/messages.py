@@ -104,6 +104,7 @@ def cell_message(cell: LiveCell) -> Message:
         "steps_done": cell.steps_done,
         "step_count": cell.document.step_count,
         "is_run": cell.is_run,
+        "is_by_hand": cell.is_by_hand,
     }
 
 

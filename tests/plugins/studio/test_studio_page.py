@@ -144,7 +144,7 @@ def test_the_first_minute_a_slider_execute_and_run_all(browser, serve):
     page.page.mouse.up()
     page.wait_text("#status", "moved by hand")
     page.page.click("#execute")
-    page.wait_text("#status", "1 of 1 steps executed")
+    page.wait_text("#status", "1 of 1 steps executed, from where the arm was moved by hand")
     assert "move_to: {joints: {joint1: " in page.editor()
     page.page.focus("input[aria-label=joint1]")
     page.page.keyboard.press("o")
@@ -159,7 +159,10 @@ def test_the_first_minute_a_slider_execute_and_run_all(browser, serve):
     page.page.click("#run-all")
     page.wait_text("#verdicts", "digest")
     assert "passed" in page.page.get_attribute(".outcome", "class")
+    assert page.page.inner_text("#status") == "3 of 3 steps executed"
     text = page.editor()
+    line = 1 + text.splitlines().index(next(each for each in text.splitlines() if "- " in each))
+    assert page.page.locator(".verdict .line").first.inner_text() == f"line {line}"
     page.page.click("#execute")
     page.wait_text("#log", "there is no goal: move a joint")
     assert page.editor() == text

@@ -89,7 +89,7 @@ on("state", (message) => {
   $("play").querySelector("use").setAttribute("href", message.is_playing ? "#i-pause" : "#i-play");
   document.body.classList.toggle("busy", Boolean(message.busy));
   $("status").textContent = message.busy ? message.busy
-    : `${message.steps_done} of ${message.step_count} steps executed${message.is_run ? "" : "; then moved by hand"}`;
+    : `${message.steps_done} of ${message.step_count} steps executed${message.is_by_hand ? "; then moved by hand" : message.is_run ? "" : ", from where the arm was moved by hand"}`;
   robot?.joints.forEach((joint, index) => rows.get(joint.name)?.show(message.positions[index]));
   if (width && message.width !== null) width.show(message.width);
   const near = message.nearest ? [[message.nearest[0], message.nearest[1], amount(message.nearest[2], "m")]] : [];

@@ -14,7 +14,7 @@ on("verdicts", (message) => {
         : `${decided} of ${message.verdicts.length} expectations are decided`);
   if (!message.outcome && !message.verdicts.length) return $("verdicts").replaceChildren();
   const line = (tone, number, text, ...more) => element("div", { class: `verdict ${tone.replace(/[ _]/g, "-")}` },
-    element("i", {}), element("span", {}, text), element("span", { class: "line", title: "line of the file" }, String(number)), ...more.filter(Boolean).map((each) => element("span", {}, each)));
+    element("i", {}), element("span", {}, text), element("span", { class: "line", title: "line of the file" }, number ? `line ${number}` : ""), ...more.filter(Boolean).map((each) => element("span", {}, each)));
   $("verdicts").replaceChildren(head,
     ...message.steps.map((step) => line(step.status, step.line, step.summary)),
     ...message.verdicts.map((v) => line(v.open ? "open" : v.status, v.line, v.text,
