@@ -422,6 +422,14 @@ def test_failures_that_are_all_alike_have_a_panel_in_their_unit(tmp_path, visit,
     assert any(f"{slips} margins, from 1.1 mm to 1.1 mm" in each for each in texts) == (slips > 1)
 
 
+def test_one_failure_alone_in_its_unit_is_a_sentence(tmp_path, visit):
+    cases = [grasped(i, 0.001 + 1e-5 * i, "m") for i in range(8)] + [grasped(8, -0.05, "N")]
+    page = visit(write_suite_page(tmp_path, SuiteRecord("failed", cases))).page
+    panel = page.locator(".margins figure", has_text="of -0.05 N")
+    assert "grasped\n1 margin, of -0.05 N; 1 below zero" in panel.inner_text()
+    assert panel.locator("svg").count() == 0
+
+
 def test_the_panels_of_an_expectation_stand_next_to_each_other(tmp_path, visit):
     cases = [grasped(i, -0.05, "N") for i in range(8)]
     cases += [grasped(i, 0.001 + 1e-5 * i, "m") for i in range(8, 12)]

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.amounts import amount
+from harness.core.printable import counted
 from harness.core.types import FloatArray, IntArray
 from harness.plugins.campaigns.effects.curves import Curve, curve_of
 from harness.plugins.campaigns.effects.sensitivity import (
@@ -209,8 +210,8 @@ def _histogram(expectation: str, unit: str, values: FloatArray) -> Histogram:
     low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
     span = f"from {amount(values.min(), unit)} to {amount(values.max(), unit)}, median"
     if is_alike := bool(np.ptp(values) == 0):
-        span = "all"
-    text = f"{len(values)} margins, {span} {amount(float(np.median(values)), unit)};"
+        span = "all" if len(values) > 1 else "of"
+    text = f"{counted(len(values), 'margin')}, {span} {amount(float(np.median(values)), unit)};"
     text += f" {int((values < 0).sum())} below zero"
     bars = [] if is_alike else list(_bars(values, low, high))
     zero = WIDTH * -low / (high - low)
