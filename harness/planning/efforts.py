@@ -64,11 +64,32 @@ class InverseDynamics:
         return found[:, columns] @ space.matrix
 
     @cached_property
+    def holds_anywhere(self) -> bool:
+        """Whether the limits exceed what gravity needs at most, however the arm stands.
+
+        Each body that a joint carries counts with its weight at the end of a straightened chain.
+        """
+        model, joints = self._model, self._space.robot.description.joint_by_name
+        most, carried = np.zeros(model.nv), np.zeros((model.njoints, 2))  # moment, mass
+        for joint in range(model.njoints - 1, 0, -1):
+            known, body = joints[model.names[joint]], model.inertias[joint]
+            moment, mass = carried[joint] + (np.linalg.norm(body.lever) * body.mass, body.mass)
+            slides = known.kind == "prismatic"
+            most[model.joints[joint].idx_v] = mass if slides else moment
+            away = np.linalg.norm(model.jointPlacements[joint].translation)
+            away += max(abs(known.lower), abs(known.upper)) if slides else 0.0
+            carried[model.parents[joint]] += moment + away * mass, mass
+        most = most[self._space.robot.velocity_columns] @ np.abs(self._space.matrix)
+        return bool(np.all(np.linalg.norm(model.gravity.linear) * most < self.limits))
+
+    @cached_property
     def _pool(self) -> pin.ModelPool:
         return pin.ModelPool(self._model, 1)
 
     def can_hold(self, positions: FloatArray) -> bool:
         """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
+        if self.holds_anywhere:
+            return True
         still = np.zeros_like(positions)
         return bool(np.all(np.abs(self.efforts(positions, still, still)) <= self.limits))
 

@@ -30,7 +30,7 @@ def compiled(folder: Path) -> Path:
 def test_a_tree_that_was_never_compiled_names_the_command(copy, monkeypatch):
     monkeypatch.setattr(sources, "FOLDER", copy)
     with pytest.raises(HarnessError, match="run `python harness/planning/collision/native/build"):
-        library.certify.__wrapped__()
+        library.library.__wrapped__()
 
 
 @pytest.mark.nightly

@@ -164,7 +164,7 @@ class MovingJoints:
         is_moving = np.any(space.matrix != 0, axis=1)
         at_zero = np.where(is_moving, 0.0, space.offset)
         pin.forwardKinematics(pin_model, robot.data, robot.configuration(at_zero))
-        self._poses = [np.array(pose.homogeneous) for pose in robot.data.oMi]
+        self._poses = [pin.SE3(pose) for pose in robot.data.oMi]
         index_of = {name: i for i, name in enumerate(description.joint_names)}
         self.above: list[int] = [-1]
         self._at: list[int] = []
@@ -183,21 +183,22 @@ class MovingJoints:
             columns.append(index_of[name])
             parent.append(before)
             kind = [1.0 if known.kind == "prismatic" else 0.0]
-            rows.append(np.concatenate([_flat(self._seen(before, joint)), known.axis, kind]))
+            rows.append(np.concatenate([self._seen(before, joint), known.axis, kind]))
         self.columns: IntArray = np.array(columns, dtype=np.int64)
         self.parent: IntArray = np.array(parent, dtype=np.int64)
         self.chain: FloatArray = np.array(rows).reshape(-1, 16)
 
     def _seen(self, moving: int, joint: int) -> FloatArray:
-        """Pose of a Pinocchio joint relative to a moving joint (-1: the world), shape (4, 4)."""
-        if moving < 0:
-            return self._poses[joint]
-        return np.linalg.inv(self._poses[self._at[moving]]) @ self._poses[joint]
+        """Pose of a Pinocchio joint relative to a moving joint (-1: the world), shape (12,)."""
+        pose = self._poses[joint]
+        if moving >= 0:
+            pose = self._poses[self._at[moving]].actInv(pose)
+        return np.concatenate([pose.rotation.reshape(-1), pose.translation])
 
     def body_poses(self, bodies: tuple[Body, ...]) -> FloatArray:
         """Poses of bodies relative to the moving joints that carry them, shape (B, 12)."""
         joints = [body.rigid.joint for body in bodies]
-        poses = {joint: _flat(self._seen(self.above[joint], joint)) for joint in {*joints}}
+        poses = {joint: self._seen(self.above[joint], joint) for joint in {*joints}}
         return np.array([poses[joint] for joint in joints]).reshape(-1, 12)
 
 
@@ -263,8 +264,3 @@ def _has_plane(body: Body) -> bool:
 def _layout(model: CollisionModel, above: tuple[int, ...], parent: tuple[int, ...]) -> _Layout:
     """The layout of a scene for a set of moving joints."""
     return _Layout(model, above, parent)
-
-
-def _flat(matrix: FloatArray) -> FloatArray:
-    """Rotation row by row, then translation, shape (12,)."""
-    return np.concatenate([matrix[:3, :3].reshape(-1), matrix[:3, 3]])

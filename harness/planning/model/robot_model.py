@@ -190,6 +190,7 @@ class GroupSpace:
         return float(np.linalg.norm((second - first) * self.metric * self.leverage))
 
 
+@lru_cache(maxsize=16)
 def _leverage(description: RobotDescription, joint_names: tuple[str, ...]) -> FloatArray:
     """Length of the chain distal to each joint over the longest: a wrist's turn counts less."""
     last = description.joint_by_name[joint_names[-1]].child

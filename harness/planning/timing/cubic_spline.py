@@ -1,4 +1,4 @@
-"""Smooth curves through many joint positions, without `scipy.interpolate`, a second of imports."""
+"""Piecewise cubic curves in joint space; SciPy's splines take a second of imports."""
 
 from __future__ import annotations
 
@@ -7,22 +7,58 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.planning.collision.native.library import call
+
+_UNTIMED = np.zeros(2), np.zeros(2), np.ones(2), np.zeros(1)  # the time is the parameter
 
 
 @dataclass(frozen=True, eq=False)
-class CubicSpline:
-    """A twice differentiable piecewise cubic with not-a-knot ends, equal to SciPy's to the bit.
+class PiecewiseCubic:
+    """Cubics of a parameter, one after the other.
 
     Attributes:
-        knots: Parameters of the samples, strictly increasing, shape (N,).
-        coefficients: Those of the powers 3, 2, 1, 0 on every piece, shape (N - 1, dof) each.
+        begins: The parameters at which the pieces begin and the last one ends, shape (K + 1,).
+        origins: A piece is a cubic of the parameter minus the first plus the second, shape (K, 2).
+        coefficients: Those of the powers 3, 2, 1, 0 on every piece, shape (K, dof) each.
+        domain: The least and the largest parameter, and how near below a piece belongs to it.
     """
 
-    knots: FloatArray
+    begins: FloatArray
+    origins: FloatArray
     coefficients: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    domain: tuple[float, float, float] = (-np.inf, np.inf, 0.0)
+
+    def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Values and their first two derivatives, (M, dof) each, at parameters (M,)."""
+        return self.timed(parameter, _UNTIMED)
+
+    def timed(
+        self, times: FloatArray, steps: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Positions, velocities and accelerations, (M, dof) each, at times (M,).
+
+        Args:
+            times: The times, not negative.
+            steps: The time, the parameter and its rate at which each step begins, at which the last
+                one may end, and the change of the rate during each step.
+        """
+        found = np.empty((3, len(times), self.coefficients[0].shape[1]))
+        path = self.begins, self.origins, *self.coefficients, np.array(self.domain)
+        positions, velocities, accelerations = call("timed_states", (times, *steps, *path), found)
+        return positions, velocities, accelerations
+
+
+class CubicSpline(PiecewiseCubic):
+    """A twice differentiable piecewise cubic with not-a-knot ends, equal to SciPy's to the bit."""
 
     @classmethod
-    def through(cls, knots: FloatArray, samples: FloatArray) -> CubicSpline:
+    def through(
+        cls,
+        knots: FloatArray,
+        samples: FloatArray,
+        *,
+        ends: tuple[float, float] = (-np.inf, np.inf),
+    ) -> CubicSpline:
         """The spline through samples (N, dof) at their parameters (N,), N > 1.
 
         References:
@@ -33,25 +69,13 @@ class CubicSpline:
         slope = _slopes(width, secant)
         bend = (slope[:-1] + slope[1:] - 2 * secant) / width
         cubic, square = bend / width, (secant - slope[:-1]) / width - bend
-        return cls(knots, (cubic, square, slope[:-1], samples[:-1]))
+        origins = np.column_stack([knots[:-1], np.zeros(len(width))])
+        return cls(knots, origins, (cubic, square, slope[:-1], samples[:-1]), (*ends, 0.0))
 
     @classmethod
     def even(cls, samples: FloatArray) -> CubicSpline:
         """The spline through samples (N, dof) at even parameters from 0 to 1."""
         return cls.through(np.linspace(0.0, 1.0, len(samples)), samples)
-
-    def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Values and their first two derivatives, (M, dof) each, at parameters (M,)."""
-        last = len(self.knots) - 2
-        piece = np.clip(np.searchsorted(self.knots, parameter, side="right") - 1, 0, last)
-        cubic, square, slope, value = (rows[piece] for rows in self.coefficients)
-        u = (parameter - self.knots[piece])[:, None]
-        u2 = u * u
-        return (
-            value + slope * u + square * u2 + cubic * (u2 * u),
-            slope + square * u * 2 + cubic * u2 * 3,
-            square * 2 + cubic * u * 6,
-        )
 
 
 def _slopes(width: FloatArray, secant: FloatArray) -> FloatArray:

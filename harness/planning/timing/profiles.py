@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.collision.native.library import call
 
 GRID = 0.002  # Durations are whole multiples of this [s]: two of the physics' default time steps
 SAMPLE_PERIOD = 0.01
@@ -204,26 +205,12 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
     pieces = 0.5 * step * (at[:-1] + at[1:]) + step**2 / 12 * (rates[:-1] - rates[1:])
     sums = np.concatenate([np.zeros_like(at[:1]), np.cumsum(pieces, axis=0)])
 
-    def states(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Integral, position and velocity, resting before the start and after the end."""
-        inside = np.clip(times, 0.0, duration)
-        positions, velocities, _ = curve(inside)
-        resting = (times <= 0.0) | (times >= duration)
-        velocities[resting] = 0.0
-        low = np.minimum((inside / step).astype(int), count - 1)
-        rest = (inside - knots[low])[:, None]
-        integral = (
-            sums[low]
-            + 0.5 * rest * (at[low] + positions)
-            + rest**2 / 12 * (rates[low] - velocities)
-            + (times - inside)[:, None] * positions
-        )
-        return integral, positions, velocities
-
     def mean(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        times = np.asarray(times, dtype=float)
-        count, both = len(times), states(np.concatenate([times, times - window]))
-        integral, positions, velocities = ((x[:count] - x[count:]) / window for x in both)
-        return integral, positions, velocities
+        both = np.concatenate([times, times - window])
+        states = curve(np.clip(both, 0.0, duration))[:2]
+        means = np.empty((3, len(times), at.shape[1]))
+        given = both, knots, sums, at, rates, *states, np.array([step, window])
+        positions, velocities, accelerations = call("window_means", given, means)
+        return positions, velocities, accelerations
 
     return mean

@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.timing.cubic_spline import PiecewiseCubic
 from harness.planning.timing.limits import Limits as Limits
 from harness.planning.timing.limits import TimingError as TimingError
 from harness.planning.timing.limits import joint_motion, sampled_within_limits
@@ -54,25 +55,24 @@ class BlendedPath:
         self.breaks = np.concatenate(
             [[0.0], _alternating(corners - reaches, corners + reaches), [self.length]]
         )
-        self._pieces = (
-            _alternating(knots[:-1], corners),
-            _alternating(np.zeros(len(segments)), reaches),
-            _alternating(waypoints[:-1], entries),
-            _alternating(directions, directions[:-1]),
-            bends,
+        origins = np.column_stack(
+            [_alternating(knots[:-1], corners), _alternating(np.zeros(len(segments)), reaches)]
         )
+        coefficients = (
+            np.zeros_like(bends),
+            0.5 * bends,
+            _alternating(directions, directions[:-1]),
+            _alternating(waypoints[:-1], entries),
+        )
+        domain = -np.inf, np.inf, _ROUNDING
+        self.cubics = PiecewiseCubic(self.breaks, origins, coefficients, domain)
 
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions and their first two derivatives, (M, dof) each, at parameters (M,).
 
         Where the second derivative jumps, its value is the limit from above (at the end: below).
         """
-        s = np.atleast_1d(np.asarray(parameter, dtype=float))
-        last = len(self.breaks) - 2
-        piece = np.clip(np.searchsorted(self.breaks, s + _ROUNDING, side="right") - 1, 0, last)
-        knot, reach, entry, direction, bend = (rows.take(piece, axis=0) for rows in self._pieces)
-        u = (s - knot + reach)[:, None]
-        return entry + u * direction + 0.5 * u**2 * bend, direction + u * bend, bend
+        return self.cubics.evaluate(parameter)
 
     def grid(self) -> FloatArray:
         """Points for TOPP-RA: evenly on every line and blend, shape (M,)."""

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.planning.timing.cubic_spline import PiecewiseCubic
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import Curve
 from harness.planning.timing.toppra_passes import Bounds, squared_rates
@@ -19,6 +20,11 @@ class JointCurve(Protocol):
     """A curve in joint space over a parameter from 0 to its length."""
 
     length: float
+
+    @property
+    def cubics(self) -> PiecewiseCubic:
+        """The curve as a piecewise cubic."""
+        ...
 
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions and their first two derivatives, (M, dof) each, at parameters (M,)."""
@@ -81,12 +87,4 @@ def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve
     growths = 0.5 * np.diff(rates**2) / steps
     ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])
 
-    def timed(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        step = np.minimum(np.searchsorted(ends, times, side="right") - 1, len(steps) - 1)
-        since, growth = times - ends[step], growths[step]
-        parameter = grid[step] + since * rates[step] + 0.5 * since**2 * growth
-        rate = (rates[step] + since * growth)[:, None]
-        positions, first, second = path.evaluate(parameter)
-        return positions, first * rate, second * rate**2 + first * growth[:, None]
-
-    return timed, float(ends[-1])
+    return lambda times: path.cubics.timed(times, (ends, grid, rates, growths)), float(ends[-1])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from harness.core.types import FloatArray
@@ -28,16 +30,17 @@ class JointSpline:
         steps = np.linalg.norm(np.diff(self.samples, axis=0), axis=1)
         self.knots: FloatArray = np.concatenate([[0.0], np.cumsum(steps)])
         self.length = float(self.knots[-1])
-        self._spline = (
-            CubicSpline.through(self.knots, self.samples) if len(self.knots) > 1 else None
-        )
+
+    @cached_property
+    def cubics(self) -> CubicSpline:
+        """The curve, constant before its start and after its end."""
+        if len(self.knots) < 2:
+            raise ValueError("the curve has no length")
+        return CubicSpline.through(self.knots, self.samples, ends=(0.0, self.length))
 
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions and their first two derivatives, (M, dof) each, at parameters (M,)."""
-        if self._spline is None:
-            raise ValueError("the curve has no length")
-        s = np.clip(np.atleast_1d(np.asarray(parameter, dtype=float)), 0.0, self.length)
-        return self._spline.evaluate(s)
+        return self.cubics.evaluate(np.atleast_1d(np.asarray(parameter, dtype=float)))
 
     def grid(self, pieces: int = 2) -> FloatArray:
         """The knots, and evenly spaced points between them."""

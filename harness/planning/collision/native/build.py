@@ -44,7 +44,7 @@ def compile_library() -> Path:
     # The package itself cannot be imported yet: its dependencies are not installed.
     path: Path = runpy.run_path(str(FOLDER / "sources.py"))["library_path"]()
     unfinished = path.with_suffix(f".{os.getpid()}.so")
-    sources = [str(FOLDER / "certify.c"), "-o", str(unfinished), "-lm"]
+    sources = [*map(str, sorted(FOLDER.glob("*.c"))), "-o", str(unfinished), "-lm"]
     try:
         subprocess.run([*(system_compiler() or ZIG), *FLAGS, *SHARED, *sources], check=True)
         unfinished.replace(path)

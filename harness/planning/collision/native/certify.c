@@ -74,17 +74,19 @@ static int64_t segment_of(const Check *c, int64_t state) {
     return low;
 }
 
+/* A joint's value at a state of a segment. */
+static double joint_at(const Check *c, int64_t joint, int64_t segment, double state) {
+    const double *at = c->corners + segment * c->width + joint, *begin = c->places + segment;
+    return *at + (at[c->width] - *at) / (begin[1] - *begin) * (state - *begin);
+}
+
 /* How far a joint moves from a value within an interval that has corners in it. */
 static double farthest(const Check *c, int64_t joint, double value, int64_t low, int64_t high) {
-    double widest = 0.0;
-    for (int64_t k = segment_of(c, low), final = segment_of(c, high); k <= final; ++k) {
-        double begin = c->places[k], end = c->places[k + 1];
-        double at = c->corners[k * c->width + joint];
-        double rate = (c->corners[(k + 1) * c->width + joint] - at) / (end - begin);
-        double first = largest_of(begin, (double)low), last = least_of(end, (double)high);
-        widest = largest_of(widest, fabs(at + rate * (first - begin) - value));
-        widest = largest_of(widest, fabs(at + rate * (last - begin) - value));
-    }
+    int64_t first = segment_of(c, low), final = segment_of(c, high);
+    double widest = largest_of(fabs(joint_at(c, joint, first, (double)low) - value),
+                               fabs(joint_at(c, joint, final, (double)high) - value));
+    for (int64_t k = first + 1; k <= final; ++k)
+        widest = largest_of(widest, fabs(c->corners[k * c->width + joint] - value));
     return widest;
 }
 

@@ -1,12 +1,15 @@
-"""Loads the compiled check of motions."""
+"""Loads the compiled check and timing of motions."""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 
+import numpy as np
+
 from harness.core.errors import HarnessError
+from harness.core.types import FloatArray
 from harness.planning.collision.native.sources import library_path
 
 Certify = Callable[[int, int, int], int]
@@ -19,8 +22,8 @@ FULL = -(2**62)  # The result of `certify` when the memory for intervals is full
 
 
 @cache
-def certify() -> Certify:
-    """Load the compiled check.
+def library() -> ctypes.CDLL:
+    """Load what was compiled.
 
     Raises:
         HarnessError: This source tree was never compiled.
@@ -31,7 +34,21 @@ def certify() -> Certify:
             "the check of motions is not compiled in this source tree: install the package "
             f"with pip, or run `python {BUILD}` there"
         )
-    function = ctypes.CDLL(str(path)).certify
+    return ctypes.CDLL(str(path))
+
+
+def call(name: str, arrays: Sequence[FloatArray], found: FloatArray) -> FloatArray:
+    """Call a function of timing.c with arrays, and return the last one, into which it writes."""
+    every = [*map(np.ascontiguousarray, arrays), found]
+    rows = [(each.__array_interface__["data"][0], *each.shape, 1, 1)[:4] for each in every]
+    library()[name](ctypes.c_void_p(np.array(rows, dtype=np.int64).ctypes.data))
+    return found
+
+
+@cache
+def certify() -> Certify:
+    """The compiled check."""
+    function = library().certify
     function.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64]
     function.restype = ctypes.c_int64
     return function
