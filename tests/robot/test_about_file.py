@@ -71,6 +71,28 @@ def test_a_limit_that_no_run_reaches_is_noted(tmp_path, capsys, expected, said):
     assert not said or f"note: line 6: {said}, more than any run reaches" in printed
 
 
+@pytest.mark.parametrize(
+    ("expected", "said"),
+    [
+        ("path_length: 500", "500 is a length in metres; write `500 mm` for millimetres"),
+        ("always: {path_length: {at_most: 20}}", "20 is a length in metres; write `20 mm`"),
+        ("duration: 300", "300 is a time in seconds; write `300 ms` for milliseconds"),
+        ("{eventually: {gripper: open}, within: 250}", "250 is a time in seconds; write `250 ms`"),
+        ("path_length: 500 m", ""),
+        ("path_length: 8", ""),
+        ("duration: 60", ""),
+    ],
+)
+def test_a_limit_without_a_unit_that_looks_like_another_one_is_noted(
+    tmp_path, capsys, expected, said
+):
+    path = written(tmp_path, f"  - wait: 0.05 s\nexpect:\n  - {expected}\n")
+    assert main(["check", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert said in printed
+    assert ("; write" in printed) == bool(said), printed
+
+
 def test_an_angle_that_looks_like_degrees_is_noted_with_its_place(tmp_path, capsys):
     text = "  - wait: 0.05 s\nobjects:\n  - {name: a, box: {size: [0.1, 0.1, 0.1]}, static: true,"
     text += " pose: {xyz: [0.5, 0, 0.5], rpy: [0, 0, 90]}}\nexpect: [within_limits]\n"

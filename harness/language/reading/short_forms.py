@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, cast, get_args, get_origin
 
 from pydantic.fields import FieldInfo
@@ -36,8 +37,14 @@ from harness.language.reading.wording import on_one_line, written_under
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, TAG, StepFields
 
-TURN = 6.283186  # [rad], rounded up
-FAR = 100.0  # [m]; a larger number without a unit is one of millimetres in all likelihood
+UNITS = {
+    "rad": ("an angle in radians, {:.1f} degrees", "deg", "degrees"),
+    "m": ("a length in metres", "mm", "millimetres"),
+    "s": ("a time in seconds", "ms", "milliseconds"),
+}
+LARGEST = {"rad": 6.283186, "m": 100.0}  # a whole turn, rounded up
+"""Larger numbers without a unit are of another one in all likelihood."""
+EXPECTED = {"rad": 6.283186, "m": 10.0, "s": 100.0}  # the same in expectations
 
 
 def models_shape(
@@ -55,27 +62,22 @@ def models_shape(
         guessed: Gets the places of values whose keys are guesses, whose mistakes may be none.
         reader: Gets the words of what is left out: problems that name one may follow from it.
     """
-    shaper = _Shaper(
+    return _Shaper(
         problems,
         [] if notes is None else notes,
         set() if guessed is None else guessed,
         PartialReader() if reader is None else reader,
-    )
-    return shaper.model(item, model)
+        LARGEST,
+    ).model(item, model)
 
 
+@dataclass
 class _Shaper:
-    def __init__(
-        self,
-        problems: list[Problem],
-        notes: list[Problem],
-        guessed: set[tuple[str, int, int]],
-        reader: PartialReader,
-    ) -> None:
-        self.problems = problems
-        self.notes = notes
-        self.guessed = guessed
-        self.reader = reader
+    problems: list[Problem]
+    notes: list[Problem]
+    guessed: set[tuple[str, int, int]]
+    reader: PartialReader
+    largest: Mapping[str, float]
 
     def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
         self._note_unit(item, annotation, metadata)
@@ -83,7 +85,7 @@ class _Shaper:
         if annotation is StepFields:
             return self.step(item)
         if annotation is ExpectationFields:
-            return self.expectation(item)
+            return replace(self, largest=EXPECTED).expectation(item)
         if is_model(annotation) and issubclass(annotation, PredicateFields):
             return self.predicate(item)
         if is_model(annotation):
@@ -109,19 +111,16 @@ class _Shaper:
         return self.shape(item, field.annotation, field.metadata)
 
     def _note_unit(self, item: Located, annotation: Any, metadata: Iterable[Any]) -> None:
-        """Note numbers that are degrees or millimetres in all likelihood."""
+        """Note numbers that are of another unit in all likelihood."""
         number = item.value
-        if isinstance(number, bool) or not isinstance(number, int | float) or abs(number) <= TURN:
+        if isinstance(number, bool) or not isinstance(number, int | float):
             return
         units = units_of(annotation, metadata)
-        if "rad" in units:
-            message = f"{number:g} is an angle in radians, {math.degrees(number):.1f} degrees"
-            hint = f"write `{number:g} deg` for degrees"
-            self.notes.append(item.place.problem(message, hint))
-        elif "m" in units and abs(number) > FAR:
-            message = f"{number:g} is a length in metres"
-            hint = f"write `{number:g} mm` for millimetres"
-            self.notes.append(item.place.problem(message, hint))
+        unit = next((each for each in UNITS if each in units), "")
+        if abs(number) > self.largest.get(unit, math.inf):
+            what, other, name = UNITS[unit]
+            message = f"{number:g} is {what.format(math.degrees(number))}"
+            self.notes.append(item.place.problem(message, f"write `{number:g} {other}` for {name}"))
 
     def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:
         """A mapping with the model's keys; `names` holds the words for its messages."""
@@ -206,6 +205,10 @@ class _Shaper:
         if found is None:
             return _placeholder(item, CHECK, PLACEHOLDER_WORD)
         until = found.siblings.pop(UNTIL, None)
+        known = keys_of(EXPECTATIONS[found.word])
+        for field, entry in ((known.get(key), entry) for key, entry in found.siblings.items()):
+            if field is not None:
+                self._note_unit(entry.value, field.annotation, field.metadata)
         if until is not None and found.word != "always":
             message = f"`until` goes with `always`, not with `{found.word}`"
             self.problems.append(until.key.problem(message, UNTIL_USAGE))
