@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from docs import ROOT
+from harness.core.registry import BUILT_IN, registry
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -58,12 +59,26 @@ tempfile.gettempdir()  # Python looks for it once: a test may have another one i
 BEGINNING = State.now()
 
 
+@pytest.fixture(scope="session")
+def registered_plugins() -> set[str]:
+    """The modules of plug-ins that are registered in this process before its first test."""
+    return registered()
+
+
+def registered() -> set[str]:
+    """The modules of plug-ins that are registered now, without the built-in ones."""
+    return set[str]().union(*(registry(kind).modules() for kind in BUILT_IN))
+
+
 @pytest.fixture(autouse=True)
-def _put_back():
+def _put_back(registered_plugins):
     """Let no test change what the tests after it find."""
     before = State.now()
     yield
     before.put_back()
+    left = registered() - registered_plugins
+    registered_plugins |= left
+    assert not left, f"{sorted(left)} stay registered; load them in a process of their own"
 
 
 @contextmanager

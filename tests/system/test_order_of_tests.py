@@ -44,6 +44,32 @@ def test_no_test_changes_what_the_next_one_finds(pytester, monkeypatch):
     pytester.runpytest_subprocess(*in_order).assert_outcomes(passed=1, failed=1)
 
 
+PLUGINS = """\
+from harness.core.registry import register
+
+class Planner: pass
+
+if {at_import}:
+    register(Planner, kind="planner", name="of_a_test")
+
+def test_a_plugin():
+    register(Planner, kind="planner", name="of_a_test")
+
+def test_after_it(): pass
+"""
+
+
+@pytest.mark.parametrize(("at_import", "errors"), [(False, 1), (True, 0)])
+def test_a_plugin_that_a_test_leaves_registered_is_an_error(
+    pytester, monkeypatch, at_import, errors
+):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    pytester.makepyfile(PLUGINS.format(at_import=at_import))
+    done = pytester.runpytest_subprocess("-p", "no:randomly", "-p", "tests.beginning")
+    done.assert_outcomes(passed=2, errors=errors)
+    assert ("stay registered" in done.stdout.str()) == bool(errors)
+
+
 @pytest.mark.parametrize("is_removed", [False, True])
 def test_what_tests_share_starts_where_the_process_began(tmp_path, monkeypatch, is_removed):
     folder = tmp_path / "of a test"
