@@ -60,7 +60,7 @@ def folder(tmp_path):
 @pytest.mark.parametrize("verb", ["check", "run", "explain"])
 def test_a_command_reads_utf_8_and_writes_what_the_terminal_has(folder, environment, verb):
     done = subprocess.run(
-        [*HARNESS, verb, "über.scenario.yaml"],
+        [*HARNESS, verb, "über.scenario.yaml", *(["--no-page"] if verb == "run" else [])],
         cwd=folder, env=environment, capture_output=True, check=False,
     )  # fmt: skip
     encoding = "latin-1" if "LOCPATH" in environment else "ascii"

@@ -70,6 +70,7 @@ def test_a_signal_to_the_command_ends_both_processes(folder, number):
     assert "Traceback" not in said
 
 
+@pytest.mark.nightly
 def test_a_killed_command_leaves_no_process(folder):
     how = "Path('waits').write_text(str(os.getpid())); signal.pause()"
     process = command(folder, how, "check", "a.scenario.yaml")

@@ -99,7 +99,7 @@ expect: [{sees: {camera: eye, WHAT}}]
 BOX, MARKER = "box: {size: [0.1, 0.1, 0.01]}", "marker: {id: 3, size: 0.1}"
 
 
-@pytest.mark.nightly(but=["run-marked", "check-color"])
+@pytest.mark.nightly(but=["check-color"])
 @pytest.mark.parametrize(
     ("thing", "what", "place"),
     [
@@ -122,6 +122,7 @@ def test_what_opencv_draws_or_finds_is_refused_at_its_line(command, thing, what,
     assert not (tmp_path / "reports").exists()
 
 
+@pytest.mark.nightly
 def test_a_camera_looks_for_objects_without_opencv(tmp_path):
     text = SEEN.replace("OBJECT", BOX).replace("WHAT", "object: card")
     (tmp_path / "a.scenario.yaml").write_text(text)
@@ -133,6 +134,7 @@ def test_a_camera_looks_for_objects_without_opencv(tmp_path):
     assert pictures == {"color.png", "depth.npz", "depth.png", "labels.png", "segmentation.png"}
 
 
+@pytest.mark.nightly
 def test_the_film_of_a_saved_run_without_its_package_is_refused(tmp_path, recorded_run):
     scenario = tmp_path / "wait.scenario.yaml"
     scenario.write_text("scenario: A\nrobot: open_manipulator_x\nsteps: [{wait: 0.1 s}]\n")

@@ -93,14 +93,7 @@ ROBOTS = {
 }
 
 
-@pytest.mark.nightly(
-    but=[
-        "0.01-0.025-ur5e with a hull",
-        "0.0-0.025-open_manipulator_x",
-        "0.01-0.025-open_manipulator_x",
-        "0.0-0.004-open_manipulator_x",
-    ]
-)
+@pytest.mark.nightly(but=["0.01-0.025-ur5e with a hull", "0.0-0.025-open_manipulator_x"])
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize(("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 250)])
 def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(

@@ -69,6 +69,7 @@ def test_no_self_collision_is_missed_and_false_ones_are_as_rare_as_stated(name):
     assert false / SAMPLES <= STATED[name] + two_errors
 
 
+@pytest.mark.nightly(but=["ur3e"])
 @pytest.mark.parametrize("name", STATED)
 def test_the_shapes_cover_the_meshes(name):
     description = load_robot(RobotSpec(model=name))

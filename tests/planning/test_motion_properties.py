@@ -364,7 +364,16 @@ def tilted(rotation):
     return np.zeros(3) if size < 1e-12 else np.arctan2(size, z) / size * np.array([-y, x, 0.0])
 
 
-@pytest.mark.nightly(only=[8, 9, 0])
+@pytest.mark.nightly(
+    only=[
+        8,
+        9,
+        0,
+        "a_cone_a_box_and_a_band_hold_on_every_sample_and_between",
+        "a_motion_to_a_region_ends_inside_it",
+        "a_relative_motion_goes_its_distance_along_its_line",
+    ]
+)
 @pytest.mark.parametrize("name", PROPERTIES)
 def test_on_a_few_problems(name):
     holds(name, FEW)

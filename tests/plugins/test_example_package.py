@@ -55,7 +55,8 @@ def site(tmp_path_factory):
 def test_every_plug_in_of_the_package_is_used_in_one_run(site, tmp_path):
     (tmp_path / "all.scenario.yaml").write_text(SCENARIO, encoding="utf-8")
     (tmp_path / "boxes.csv").write_text("crate,0.6,0.6,0.1,0.2,0.2,0.2\n", encoding="utf-8")
-    harness(tmp_path, "run", "all.scenario.yaml", "--reporter", "verdict_table", site=site)
+    words = ("all.scenario.yaml", "--reporter", "verdict_table", "--no-page")
+    harness(tmp_path, "run", *words, site=site)
     (file,) = tmp_path.glob("reports/**/run.json")
     run = json.loads(file.read_text(encoding="utf-8"))
     move, wave = run["steps"]

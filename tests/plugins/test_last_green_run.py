@@ -51,6 +51,7 @@ def test_each_case_that_fails_is_compared_with_its_own_last_passed_run(capsys):
     assert f"{case}/{PAGE}" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_without_an_earlier_run_there_is_no_page():
     FILE.write_text(TEXT.replace("0.3 s", "0.05 s"))
     assert run("--reporter", "green=kept") == 1

@@ -28,6 +28,7 @@ def attachments(folder):
     return found
 
 
+@pytest.mark.nightly
 def test_the_page_of_a_scenario_is_attached_to_its_test(pytester):
     pytester.path.joinpath("a.scenario.yaml").write_text(SCENARIO)
     done = pytester.runpytest_subprocess("--alluredir", "allure", "--harness-in-process")
@@ -49,6 +50,7 @@ def test_the_picture_of_a_failure_is_attached_too(pytester):
     assert found[1][1].startswith(b"\xff\xd8")
 
 
+@pytest.mark.nightly
 def test_without_the_option_nothing_is_attached(pytester):
     pytester.path.joinpath("a.scenario.yaml").write_text(SCENARIO)
     pytester.runpytest_subprocess("--harness-in-process").assert_outcomes(passed=1)

@@ -279,6 +279,7 @@ def test_tabs_show_planner_source_joints_and_environment(opened):
     assert "mujoco" in opened.text("#panel-environment")
 
 
+@pytest.mark.nightly
 def test_light_and_dark_differ_and_can_be_switched(visit, failed_run):
     shades = {}
     for scheme in ("light", "dark"):

@@ -74,6 +74,7 @@ def test_sides_show_the_arm_from_elsewhere(page):
         assert all(np.abs(one - other).mean() > 2 for other in seen[:number]), number
 
 
+@pytest.mark.nightly
 def test_the_wheel_zooms_to_what_is_under_the_pointer(page):
     """What is under the pointer stays there; zooming to the middle would move it away."""
     box = page.locator("#view canvas").bounding_box()
@@ -126,6 +127,7 @@ def test_a_clearance_is_drawn_with_its_number(page):
     assert place["x"] + place["width"] <= view["x"] + view["width"]
 
 
+@pytest.mark.nightly
 def test_collision_shapes_and_the_commanded_robot_can_be_shown(page):
     page.click("#tools summary")
     before = picture(page)
@@ -194,6 +196,7 @@ def test_the_address_follows_the_clock(page):
     assert "step=" in page.url, "the selection stays"
 
 
+@pytest.mark.nightly
 def test_the_view_comes_back_when_the_graphics_card_lost_it(page):
     wait_for_frame(page)
     before = picture(page)

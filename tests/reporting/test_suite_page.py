@@ -263,6 +263,7 @@ def test_a_rate_leads_to_its_samples(small, visit):
     assert sorted(names(page)) == ["c0", "c1"]
 
 
+@pytest.mark.nightly
 def test_ten_thousand_rows_are_searched_grouped_and_scrolled(large, visit):
     """Each takes less than what a person notices; rows are drawn as far as the page is scrolled."""
     page = visit(large).page

@@ -133,6 +133,7 @@ steps:
 """
 
 
+@pytest.mark.nightly
 def test_a_line_to_a_position_turns_as_it_must_and_one_to_another_turn_is_refused(tmp_path):
     file = tmp_path / "gantry.scenario.yaml"
     file.write_text(f"scenario: a gantry{GANTRY_OF_FOUR_JOINTS}", encoding="utf-8")

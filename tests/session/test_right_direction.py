@@ -33,6 +33,7 @@ def slid(folder, *, friction=0.3, mass=0.05, force=5.0):
     return verdict.margin + 0.001
 
 
+@pytest.mark.nightly
 def test_a_slippery_box_is_not_lifted_and_a_rough_one_is(tmp_path):
     assert not is_lifted(tmp_path, friction=0.02)
     assert is_lifted(tmp_path, friction=1.0)

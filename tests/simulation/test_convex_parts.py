@@ -65,7 +65,7 @@ def test_a_ball_stays_on_top_of_the_hull_of_a_cup(tmp_path):
     assert record.signals.object_poses["ball"][-1, 2] > 0.08
 
 
-@pytest.mark.nightly(but=[", collision: exact"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("mode", ["", ", collision: exact"])
 def test_a_gripper_reaches_into_a_bin(tmp_path, mode):
     bin_file(tmp_path)

@@ -1,6 +1,7 @@
 """The same calls give the same bits, whatever ran before and in whatever pieces time goes on."""
 
 import numpy as np
+import pytest
 
 from harness.core.spatial import SE3
 from harness.simulation.mujoco_simulator import MujocoSimulator
@@ -35,11 +36,15 @@ def assert_equal_bits(first, second):
             assert values.tobytes() == others.tobytes(), name
 
 
-def test_two_runs_are_equal_to_the_bit(ur3e, gripper_over_table):
-    first = a_run(ur3e)
+@pytest.fixture(scope="module")
+def first(ur3e):
+    return a_run(ur3e)
+
+
+def test_two_runs_are_equal_to_the_bit(first, ur3e, gripper_over_table):
     MujocoSimulator(gripper_over_table, (), ()).command_gripper(1.0, 2.0, timeout=2.0)
     assert_equal_bits(first, a_run(ur3e))
 
 
-def test_time_in_pieces_is_the_same_time(ur3e):
-    assert_equal_bits(a_run(ur3e), a_run(ur3e, pieces=20))
+def test_time_in_pieces_is_the_same_time(first, ur3e):
+    assert_equal_bits(first, a_run(ur3e, pieces=20))

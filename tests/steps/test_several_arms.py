@@ -190,6 +190,7 @@ expect:
 """
 
 
+@pytest.mark.nightly
 def test_an_arm_waits_until_the_other_one_has_left(recorded_run):
     stored = read_run(recorded_run(SWAP) / "run")
     assert all(verdict.status == "passed" for verdict in stored.verdicts)
@@ -281,6 +282,7 @@ BOTH_PLACE = """
 """
 
 
+@pytest.mark.nightly
 def test_two_arms_pick_at_once(recorded_run):
     text = BOTH_PICK + (
         "expect:\n  - grasped: {object: a, by: left}\n  - lifted: {object: b, by: right}\n"

@@ -9,6 +9,7 @@ NEVER_USED = ("matplotlib", "scipy", "glfw", "OpenGL", "cv2", "rosbags", "pandas
 USED_BY_REPORTS = ("PIL", "jinja2", "numpy.ma")
 
 
+@pytest.mark.nightly(but=["RUN_MODULES-unused0"])
 @pytest.mark.parametrize(
     ("modules", "unused"),
     [

@@ -57,17 +57,22 @@ def sampled(tmp_path_factory):
 
 
 def test_a_rate_counts_each_sample_once_whatever_its_order(sampled):
-    folder, path, _, found = sampled
+    _, _, _, found = sampled
     [group] = found["rates"]
     passed = sum(case["outcome"] == "passed" for case in found["cases"])
     assert (group["rate"]["passed"], group["rate"]["total"]) == (passed, 12)
     assert 0 < passed < 12
     assert found["exit_code"] == 1
+    assert len({case["seed"] for case in found["cases"]}) == 12
+
+
+@pytest.mark.nightly
+def test_samples_have_the_same_digests_in_one_process(sampled):
+    folder, path, _, found = sampled
     alone = results(path, "--no-report", "--in-process", cwd=folder)
     assert [case["digest"] for case in alone["cases"]] == [
         case["digest"] for case in found["cases"]
     ]
-    assert len({case["seed"] for case in found["cases"]}) == 12
 
 
 def test_a_failing_sample_runs_alone_to_the_same_digest_with_the_printed_command(sampled):

@@ -62,7 +62,7 @@ def test_the_report_names_who_drew_each_picture(case):
     assert {film["backend"] for film in document["videos"]} <= {"egl", "osmesa", "rays"}
 
 
-@pytest.mark.nightly(but=["markers"])
+@pytest.mark.nightly
 def test_every_capture_is_a_sample_of_its_step_and_stands_where_the_robot_was(case):
     _, _, run = case
     steps = {step.id: step for step in run.steps}
@@ -100,7 +100,7 @@ def test_pictures_change_no_sample_of_the_physics(tmp_path):
         np.testing.assert_array_equal(rows, signals[1].object_poses[name])
 
 
-@pytest.mark.nightly(but=["markers"])
+@pytest.mark.nightly
 def test_a_video_has_a_time_for_every_frame_within_the_run(case):
     _, folder, run = case
     drawings = read_run(folder).drawings

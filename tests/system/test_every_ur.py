@@ -57,7 +57,7 @@ def check(folder, model):
     assert saved.robot.name == f"{model} + rh_p12_rn_a"
 
 
-@pytest.mark.nightly(but=["ur30"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("model", FEW)
 def test_an_arm_of_universal_robots_reaches_up_and_picks(tmp_path, model):
     check(tmp_path, model)

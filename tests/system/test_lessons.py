@@ -28,10 +28,12 @@ def flagship(recorded_run):
     return read_run(recorded_run(FLAGSHIP) / "run")
 
 
-def test_all_lessons_pass_side_by_side_and_the_flagship_has_its_digest(flagship, capsys):
-    code, cases = run_json(capsys, LESSONS, "-j", "2")
+@pytest.mark.nightly(but=["two"])
+@pytest.mark.parametrize("files", [[FIRST, FLAGSHIP], [LESSONS]], ids=["two", "all"])
+def test_lessons_pass_side_by_side_and_the_flagship_has_its_digest(flagship, capsys, files):
+    code, cases = run_json(capsys, *files, "-j", "2")
     assert code == 0, {name: (case["outcome"], case["message"]) for name, case in cases.items()}
-    assert len(cases) == len(list(LESSONS.glob("*.scenario.yaml")))
+    assert len(cases) == (2 if FIRST in files else len(list(LESSONS.glob("*.scenario.yaml"))))
     assert flagship.digest == cases[FLAGSHIP.name]["digest"]
 
 

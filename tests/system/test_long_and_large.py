@@ -53,7 +53,7 @@ class Watched:
         return self._process.wait()
 
 
-@pytest.mark.nightly(but=["12"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("count", [12, 10_000])
 def test_a_suite_of_many_cases_is_flat_in_memory_handles_and_files(count, tmp_path):
     text = ball(count, farthest="25 cm").replace("wait: 2 ms", "STEP")
@@ -87,7 +87,7 @@ def test_a_world_of_many_objects_is_run_and_judged(count, tmp_path):
     assert (tmp_path / "run/report.html").stat().st_size < 20e6
 
 
-@pytest.mark.nightly(but=["30"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("seconds", [30, HOUR])
 def test_the_page_of_a_long_recording_opens(seconds, tmp_path, visit):
     file = tmp_path / "long.scenario.yaml"

@@ -200,6 +200,7 @@ def test_no_report_writes_nothing(folder, run_here):
     assert sorted(folder.rglob("*")) == before
 
 
+@pytest.mark.nightly
 def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
     write_held("a")
     write("b")
@@ -220,7 +221,7 @@ def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
     assert [path.name for path in Path("reports").iterdir() if path.is_dir()] == ["b"]
 
 
-@pytest.mark.nightly(but=["1"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
     write("a")

@@ -126,6 +126,7 @@ def test_it_is_checked_explained_listed_and_in_the_schema(site, scenario):
     assert not validator.is_valid({**valid, "expect": [{"tcp_height": {"at_leest": "5 cm"}}]})
 
 
+@pytest.mark.nightly
 def test_it_is_on_the_reference_page(site):
     code = (
         "from docs.generators.expectations import expectations_reference;"

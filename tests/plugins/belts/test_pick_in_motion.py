@@ -54,6 +54,7 @@ def met(folder):
     return result["met"], poses[row, 0] - poses[0, 0], np.linalg.norm(result["miss"])
 
 
+@pytest.mark.nightly
 def test_a_faster_belt_takes_the_can_farther_before_it_is_met(recorded_run):
     slow, fast = (met(recorded_run(text_of(velocity=v))) for v in ("2 cm/s", "4 cm/s"))
     assert fast[1] > 1.5 * slow[1]

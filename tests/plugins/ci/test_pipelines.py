@@ -150,6 +150,7 @@ def test_a_project_is_green_then_red_before_anything_collides_then_green_again(p
     assert run_here() == 0
 
 
+@pytest.mark.nightly
 def test_the_tests_of_a_project_pass_with_its_own_configuration(project):
     done = script("pytest -q -p no:cacheprovider", project)
     assert done.returncode == 0, done.stdout
@@ -311,6 +312,7 @@ def test_the_workflows_have_no_mistake_that_actionlint_finds():
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.nightly(but=["gitlab-template", "action"])
 @pytest.mark.skipif(not is_installed("check-jsonschema"), reason="needs check-jsonschema")
 @pytest.mark.parametrize(
     ("schema", "file"),

@@ -38,6 +38,7 @@ def graded(tmp_path, monkeypatch):
     return grade
 
 
+@pytest.mark.nightly
 def test_a_node_that_crashes_earns_nothing_and_its_words_are_on_the_page(graded):
     table, folder = graded(crashing=CRASHING)
     assert float(table["crashing"]["points"]) == 0

@@ -105,7 +105,7 @@ def scenario(folder):
     return file
 
 
-@pytest.mark.nightly(but=["two publishers"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", KINDS)
 def test_calls_and_memory_are_linear_in_the_messages(kind, tmp_path):
     """Counted at a number of messages and its double; time depends on the machine."""

@@ -125,6 +125,7 @@ def test_a_file_that_ends_its_process_while_imported_is_refused(tmp_path):
         run_ik_test(IkTest(f"{tmp_path / 'mine.py'}:ik", OM))
 
 
+@pytest.mark.nightly
 def test_nothing_outlives_a_test_that_is_killed(tmp_path):
     (tmp_path / "mine.py").write_text("import time\ndef ik(x, y, z): time.sleep(1000)\n")
     arguments = ["ik-test", "mine.py:ik", "--robot", OM, "--call-limit", "500", "--no-report"]

@@ -32,15 +32,17 @@ def moved(target):
     return np.count_nonzero(np.abs(target.joint_positions - HOME) > 1e-9)
 
 
-def test_a_correct_solver_passes_with_everything_it_claims():
-    report = check_ik(correct, OM, branches=True, examples=40)
+@pytest.mark.nightly(but=["10"])
+@pytest.mark.parametrize("examples", [10, 40])
+def test_a_correct_solver_passes_with_everything_it_claims(examples):
+    report = check_ik(correct, OM, branches=True, examples=examples)
     assert report.has_passed
     assert [each.name for each in report.properties] == [
         "reaches", "answers", "limits", "refuses", "anywhere", "continuity", "determinism",
         "branches",
     ]  # fmt: skip
-    assert all(each.tried >= 8 for each in report.properties)
-    assert report.speed.calls == 40
+    assert all(each.tried >= examples // 5 for each in report.properties)
+    assert report.speed.calls == examples
 
 
 @pytest.mark.nightly

@@ -77,6 +77,7 @@ def test_round_targets_within_reach_are_judged_as_others_are(ik, kind, name, exa
     assert (name, kind) in {(finding.property, finding.kind) for finding in report.findings}
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e"])
 def test_a_round_target_is_reached_by_the_positions_that_come_with_it(robot):
     chain = load_chain(robot)

@@ -32,6 +32,7 @@ def test_a_way_leads_from_the_start_to_the_goal_along_free_edges(trial, name):
     assert solved >= 4
 
 
+@pytest.mark.nightly(but=["PRMstar"])
 @pytest.mark.parametrize("name", ["PRMstar", "BITstar"])
 def test_a_planner_that_improves_its_way_uses_its_share_and_finds_shorter_ones(trial, name):
     budgets = (200_000, 1_600_000)

@@ -93,6 +93,7 @@ def band(name, low, high):
     return moveit("Constraints", joint_constraints=[joint])
 
 
+@pytest.mark.nightly
 def test_defaults_of_the_allowed_collision_matrix_hold_where_no_entry_is(client):
     def allow(**fields):
         scene = moveit("PlanningScene", is_diff=True)
@@ -126,6 +127,7 @@ def test_defaults_of_the_allowed_collision_matrix_hold_where_no_entry_is(client)
     assert fraction() < 0.9
 
 
+@pytest.mark.nightly
 def test_kinematics_and_validity_keep_constraints(client):
     forward = client.call("compute_fk", "GetPositionFK")
     assert forward.error_code.val == NUMBERS["INVALID_LINK_NAME"]  # as MoveIt, without a name
@@ -169,6 +171,7 @@ def test_kinematics_and_validity_keep_constraints(client):
     assert validity(moveit("Constraints", orientation_constraints=[turned])) == (False, [False])
 
 
+@pytest.mark.nightly
 def test_waypoints_in_the_frame_of_the_link_follow_each_other(client, said):
     begin, turn = tip(client)
     ahead = pose((0, 0, 0.05), (0.0, 0.0, 0.0, 1.0))
@@ -187,6 +190,7 @@ def test_waypoints_in_the_frame_of_the_link_follow_each_other(client, said):
     assert any("also without `avoid_collisions`" in note for note in said)
 
 
+@pytest.mark.nightly
 def test_a_goal_of_an_orientation_alone_turns_the_link(client, said):
     goal = pose_goal(pose(HERE, (0.0, 1.0, 0.0, 0.0)), tolerance=0.02)
     goal.position_constraints = []

@@ -276,6 +276,7 @@ def outcome(sent):
     return sent.status, sent.result.error_code.val
 
 
+@pytest.mark.nightly
 def test_goals_that_are_canceled_before_they_are_planned_do_not_move_the_arm(tmp_path):
     home = {"elbow_joint": 1.0}
     with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": tmp_path / "run"}) as (
@@ -341,6 +342,7 @@ CORRIDOR = (
 AXES = [f"absolute_{axis}_axis_tolerance" for axis in "xyz"]
 
 
+@pytest.mark.nightly
 def test_a_plan_ends_with_its_allowed_time_and_other_requests_are_answered_meanwhile(tmp_path):
     folder = tmp_path / "run"
     with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": folder}) as (node, results):
@@ -417,6 +419,7 @@ WALLS = {
 }
 
 
+@pytest.mark.nightly
 def test_meshes_cones_and_planes_are_in_the_way_and_come_back_in_the_scene(tmp_path):
     folder = tmp_path / "run"
     with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": folder}) as (node, results):
@@ -444,6 +447,7 @@ def test_meshes_cones_and_planes_are_in_the_way_and_come_back_in_the_scene(tmp_p
     assert replay(folder).digest == results[0].case.digest
 
 
+@pytest.mark.nightly
 def test_a_whole_scene_replaces_the_one_before_and_a_scene_of_a_plan_is_of_it_alone(tmp_path):
     rest = CUBE + "expect: [{always: within_limits}]"
     folder = tmp_path / "run"

@@ -1,5 +1,7 @@
 """The exercise for MoveIt's clients, solved by one that sends what MoveGroupInterface sends."""
 
+import pytest
+
 from harness.core.resources import data_folder
 from harness.plugins.ros.actions import Status
 from harness.plugins.ros.handover import replay
@@ -21,6 +23,7 @@ TIP = "end_effector_link"
 SLOW = {"max_velocity_scaling_factor": 0.3, "max_acceleration_scaling_factor": 0.3}
 
 
+@pytest.mark.nightly
 def test_a_client_plans_grasps_attaches_and_lifts_for_all_points(tmp_path):
     arm = robot(model="ur3e", gripper="rh_p12_rn_a")
     home = dict(arm.states_of(GROUP)["mogi_home"].positions)

@@ -61,6 +61,7 @@ def test_a_planned_scenario_moves_a_robot_and_is_judged_from_its_topics(tmp_path
     assert results[0].commands == 2
 
 
+@pytest.mark.nightly
 def test_a_robot_whose_joints_have_a_prefix_is_moved_and_observed_by_names_without_it(tmp_path):
     prefix = "ros2: {prefix: left_}\n"
     (tmp_path / "plan").mkdir()

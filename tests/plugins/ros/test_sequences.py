@@ -139,6 +139,7 @@ REFUSED = {
 }  # fmt: skip
 
 
+@pytest.mark.nightly
 def test_sequences_that_cannot_be_are_refused_with_moveits_codes(tmp_path):
     with bridge(scenario(tmp_path, HOLD, robot=UR)) as (node, _):
         client = SequenceClient(node)

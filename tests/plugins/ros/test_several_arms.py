@@ -79,6 +79,7 @@ def test_each_arm_follows_its_own_goals_and_grips(tmp_path):
     assert replay(folder).digest == results[0].case.digest
 
 
+@pytest.mark.nightly
 def test_moveit_plans_for_an_arm_and_for_both(tmp_path):
     folder = tmp_path / "run"
     with bridge(cell(tmp_path), run={"report_dir": folder}) as (node, results):
@@ -107,6 +108,7 @@ def test_moveit_plans_for_an_arm_and_for_both(tmp_path):
     assert replay(folder).digest == results[0].case.digest
 
 
+@pytest.mark.nightly
 def test_a_motion_of_both_that_one_arm_cannot_follow_stops_both(tmp_path):
     with bridge(cell(tmp_path)) as (node, _):
         moveit = MoveGroupClient(node)

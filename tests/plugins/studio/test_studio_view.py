@@ -131,6 +131,7 @@ def test_handles_move_turn_and_size_an_object_and_move_the_goal(view):
     assert goal[:2] == pytest.approx(tcp[:2], abs=1e-3)
 
 
+@pytest.mark.nightly
 def test_a_plan_is_a_ghost_on_a_slider_and_no_ghost_lies_on_the_robot(view):
     studio = view.served.studio
     view.served.reply_to("goal", here=True)

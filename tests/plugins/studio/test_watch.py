@@ -103,6 +103,7 @@ def test_who_does_not_read_what_is_sent_delays_nothing(request_, unwatched, tmp_
         connection.close()
 
 
+@pytest.mark.nightly
 def test_a_page_that_is_gone_changes_nothing(request_, unwatched, tmp_path):
     result = run_job(replace(request_, live=str(tmp_path / "gone")), lambda _: None)
     assert result.digest == unwatched.digest

@@ -52,7 +52,7 @@ TAKE = """
 """
 
 
-@pytest.mark.nightly(but=["steps1-0.3-passed", "steps2-0.25-failed"])
+@pytest.mark.nightly(but=["steps2-0.25-failed"])
 @pytest.mark.parametrize(("steps", "x", "status"), [
     ("- move_to: {position: {xyz: [0.18, -0.2, 0.06]}, pitch: 0}" + SWING % 0.5, 0.26, "failed"),
     ("- move_to: {joints: {joint1: -0.8, joint2: -0.9}}" + SWING % 0.5, 0.3, "passed"),
