@@ -51,6 +51,7 @@ def red_in(picture):
     return (red > 90) & (red > 2 * np.maximum(blue, green))
 
 
+@pytest.mark.nightly(but=["egl"])
 @pytest.mark.parametrize("backend", ["rays", "egl"])
 def test_every_frame_shows_the_moment_that_the_clock_table_says(tmp_path, backend):
     run, objects = crossing()

@@ -96,6 +96,7 @@ def line(cell):
     return LinearMotion(PoseGoal(TCP, at(0.1, 0.12, 0.03) @ there))
 
 
+@pytest.mark.nightly(but=["lin-0.001", "ptp-0.0"])
 @pytest.mark.parametrize("padding", [0.0, 0.001])
 @pytest.mark.parametrize("kind", ["ptp", "lin"])
 def test_a_motion_that_is_too_near_only_between_two_states_is_refused(kind, padding):

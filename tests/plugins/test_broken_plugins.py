@@ -23,6 +23,7 @@ def site_of(folder, code):
     return folder
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("code", "reason"),
     [

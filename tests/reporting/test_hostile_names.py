@@ -61,7 +61,7 @@ def page_of(name, folder):
     return file
 
 
-@pytest.mark.nightly(but=["attack-1100", "long-390"])
+@pytest.mark.nightly(but=["attack-1100"])
 @pytest.mark.parametrize("width", [390, 1100])
 @pytest.mark.parametrize("name", NAMES.values(), ids=NAMES)
 def test_no_name_becomes_markup_or_breaks_the_page(visit, tmp_path, name, width):

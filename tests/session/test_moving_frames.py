@@ -39,6 +39,7 @@ def miss(run):
     return np.linalg.norm(run.signals.tcp_pose[end, :3] - above), poses[end, 0] - poses[0, 0]
 
 
+@pytest.mark.nightly(but=["surface_velocity: 4 cm/s"])
 @pytest.mark.parametrize("motion", ["surface_velocity: 4 cm/s", "surface_velocity: 0"])
 def test_the_tool_is_over_the_object_when_it_arrives(motion, tmp_path):
     recorded = run(tmp_path, motion)
@@ -98,6 +99,7 @@ def run_by_themselves(folder, joint, tilt, steps):
     return read_run(folder / "run").run
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("joint", "tilt", "name"),
     [

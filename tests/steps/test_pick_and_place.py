@@ -312,6 +312,7 @@ def test_a_grasp_that_is_blocked_is_taken_another_way(tmp_path, shape, grasps, t
     assert result.outcome == ("passed" if taken else "failed"), failures(result)
 
 
+@pytest.mark.nightly(but=["0.046-2"])
 @pytest.mark.parametrize(("width", "touching"), [(0.046, 2), (0.040, 0)])
 def test_what_the_hand_overlaps_at_the_start_is_a_note_although_it_opens_first(
     tmp_path, width, touching

@@ -33,6 +33,7 @@ def imported(folder, belt, box=".7 .35 .13"):
     return path, load_mjcf(path)
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("kind", BELTS)
 def test_a_box_is_carried_as_in_mujoco(kind, tmp_path):
     path, _ = imported(tmp_path, BELTS[kind])

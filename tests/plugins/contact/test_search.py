@@ -52,6 +52,7 @@ def test_a_pressed_peg_drops_where_the_spiral_passes_the_hole(found):
     assert result.offset == pytest.approx(0.0003, abs=0.0002)
 
 
+@pytest.mark.nightly
 def test_a_search_repeats_to_the_same_digest(found, tmp_path):
     again = run_of(tmp_path, 0.1003, PRESSING % SEARCH)
     assert again.case.digest == found.case.digest

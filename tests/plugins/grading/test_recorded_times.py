@@ -85,6 +85,7 @@ def test_a_gap_is_no_failure_and_no_success(recording, tmp_path):
     assert any("green_cylinder: no pose for" in note for note in grade.notes)
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("seconds", [(4.0, 6.0), (4.0, 4.4), (9.0, 9.3)])
 def test_nothing_is_interpolated_across_a_hole_in_the_joint_states(recording, tmp_path, seconds):
     begin, end = (GAZEBO_STARTED + second for second in seconds)

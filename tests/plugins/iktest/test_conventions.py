@@ -52,7 +52,7 @@ def centimetres_and_degrees(x, y, z, pitch):
     return [in_degrees(*each) for each in targets(0.01, pi / 180)(x, y, z, pitch)]
 
 
-@pytest.mark.nightly
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("ik", "words"),
     [
@@ -93,6 +93,7 @@ REVERSED = "joint3 counts in the other direction"
 IN_MILLIMETRES = "the target is given in millimetres"
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("ik", "words"),
     [
