@@ -65,7 +65,8 @@ def groups_of(run: Run, verdicts: Sequence[Verdict] = ()) -> Iterator[Group]:
         world.tcp_position, world.tcp_turn, world.tcp_speed, world.heights, world.displacements,
         world.turns, joints.gripper_effort,
         joints.commands, joints.velocity_errors, joints.plain_velocities, joints.plain_efforts,
-        joints.other_positions, world.planned_clearances, world.frame_travel,
+        joints.other_positions, joints.other_velocities,
+        world.planned_clearances, world.frame_travel,
     )  # fmt: skip
     for make in makers:
         group = make(run)

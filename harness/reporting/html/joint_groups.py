@@ -161,12 +161,24 @@ def velocity_errors(run: Run) -> Group:
     return Group("velocity_error", "velocity error", unit, _joint_series(run, errors), least=0.1)
 
 
+def other_velocities(run: Run) -> Group:
+    """Velocities of the joints that are not the arm's."""
+    series = _of_others(run, run.signals.joint_velocities)
+    return Group(
+        "other_velocity", "other joints' velocity", f"{_angle_unit(_others(run))}/s", series
+    )
+
+
 def other_positions(run: Run) -> Group:
     """Positions of the joints that are not the arm's: fingers and their followers."""
+    unit, rows = _angle_unit(_others(run)), run.signals.joint_positions
+    return Group("other_position", "other joints' position", unit, _of_others(run, rows))
+
+
+def _others(run: Run) -> list[tuple[int, Joint]]:
     arm = {column for column, _ in _arm(run)}
-    others = [(i, joint) for i, joint in enumerate(run.robot.movable_joints) if i not in arm]
-    series = {
-        joint.name: _factor(joint) * run.signals.joint_positions[:, i]
-        for i, joint in others[:MOST_SERIES]
-    }
-    return Group("other_position", "other joints' position", _angle_unit(others), series)
+    return [(i, joint) for i, joint in enumerate(run.robot.movable_joints) if i not in arm]
+
+
+def _of_others(run: Run, array: FloatArray) -> dict[str, FloatArray]:
+    return {joint.name: _factor(joint) * array[:, i] for i, joint in _others(run)[:MOST_SERIES]}

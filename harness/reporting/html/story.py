@@ -21,6 +21,10 @@ from harness.robot.mechanism import Joint
 EXTERNAL = "external"
 """The verb of the step in which programs outside command the robot."""
 
+OF_STARTS = "overlap", "link_overlap", "nothing_expected", "coupling", "looks", "doubt"
+WARNINGS = (*OF_STARTS, "fault_without_effect", "fallen_part", "held_at_once")
+"""Kinds of findings by which a run may mean less than it seems to; others are notes."""
+
 TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}
 
 
@@ -40,25 +44,12 @@ def depth_of(step: StepRecord, run: Run) -> int:
     return sum(is_nested(step.path, other.path) for other in run.steps)
 
 
-def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bool:
-    """Whether an expectation of the step, or of one around it, failed by a sample of it."""
-    around = {
-        each.id for each in run.steps if each.path == step.path or is_nested(step.path, each.path)
-    }
-    return any(
-        each.status == "failed" and each.step in around
-        and (step.start_time < each.time <= step.end_time or each.step == step.id)
-        for each in verdicts
-    )  # fmt: skip
-
-
 def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """A step as plain data; one whose own expectations do not hold looks failed."""
     tone = TONES[step.status]
     broken = [each for each in verdicts if each.step == step.id and each.status == "failed"]
     return {
         "tone": "bad" if broken and tone == "good" else tone,
-        "band": "bad" if tone == "good" and _decided_here(run, step, verdicts) else tone,
         "broken": [f"{each.expectation}: {each.reason or each.status}" for each in broken],
         "id": step.id,
         "verb": step.verb,
@@ -154,6 +145,7 @@ def findings_facts(run: Run) -> list[dict[str, Any]]:
         {
             "kind": finding.kind,
             "message": finding.message,
+            "isWarning": finding.kind in WARNINGS or finding.values.get("held") is False,
             "time": _number(finding.time),
             "step": finding.step,
         }

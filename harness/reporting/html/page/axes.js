@@ -49,9 +49,9 @@ export class Axes {
 /**
  * The values shown: all between two times, and the limits that need it.
  * @param {import("./plot.js").PlotData} data @param {Set<number>} hidden series
- * @param {number} from @param {number} to [s] @returns {[number, number]}
+ * @param {number} from @param {number} to [s] @param {{value: number}[]} [judged] limits of the chosen verdict @returns {[number, number]}
  */
-export function rangeOf(data, hidden, from, to) {
+export function rangeOf(data, hidden, from, to, judged = []) {
   let [low, high] = [Infinity, -Infinity];
   const take = (value) => {
     if (value < low) low = value;
@@ -63,6 +63,7 @@ export function rangeOf(data, hidden, from, to) {
     for (let i = Math.max(0, indexAt(series.times, from) - 1); i <= last; i++) take(series.values[i]);
   });
   for (const limit of limitsOf(data, hidden)) if (limit.stretches) take(limit.value);
+  for (const { value } of judged) take(value);
   if (low > high) [low, high] = [0, 1];
   const least = Math.max(1e-9, 1e-3 * Math.max(Math.abs(low), Math.abs(high)), data.least);
   if (high - low < least) [low, high] = [(low + high - least) / 2, (low + high + least) / 2];

@@ -22,9 +22,12 @@ function asNode(child) {
   return child instanceof Node ? child : String(child);
 }
 
-/** A name that breaks where its parts meet. @param {string} text @returns {any[]} children of an element */
+const LONG = 18; // characters of a word that may be broken where its parts meet
+
+/** Text whose long names break where their parts meet. @param {string} text @returns {any[]} children of an element */
 export function breakable(text) {
-  return text.split(/(?<=[_.:/])(?=\w)/).flatMap((part, index) => (index ? [document.createElement("wbr"), part] : [part]));
+  const parts = text.split(/(\s+)/).flatMap((word) => (word.length > LONG ? word.split(/(?<=[_:/]|\.(?=[a-z]))(?=\w)/) : [word]));
+  return parts.flatMap((part, index) => (index ? [document.createElement("wbr"), part] : [part]));
 }
 
 /** @param {string} id @returns {any} */

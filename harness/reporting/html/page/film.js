@@ -55,7 +55,7 @@ export function makeFilm(run, clock, draw) {
     const shown = chosen(moments, clock.span, count);
     const width = Math.min(strip.clientWidth / count, 2 * WIDTH);
     const pictures = shown.map(({ time, title, tone }) =>
-      element(`canvas${tone && `.${tone}`}`, {
+      element(`canvas.waiting${tone && `.${tone}`}`, {
         width: Math.round(width * SHARPNESS), height: Math.round(strip.clientHeight * SHARPNESS),
         title: [title, seconds(time)].filter(Boolean).join("\n"), "data-time": time,
       }),
@@ -65,6 +65,8 @@ export function makeFilm(run, clock, draw) {
       if (index >= count || number !== request) return;
       if (clock.isPlaying) return void setTimeout(() => next(index), 500);
       draw(shown[index].time, pictures[index]);
+      pictures[index].classList.remove("waiting");
+      for (const later of pictures.slice(index + 1)) later.getContext("2d").drawImage(pictures[index], 0, 0);
       whenIdle(() => next(index + 1));
     };
     whenIdle(() => next(0));

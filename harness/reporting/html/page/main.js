@@ -1,6 +1,7 @@
 // Puts the page together: one clock, and everything that follows it.
 
 import { Address, readAddress } from "./address.js";
+import { judgedSpan, momentOf, showCause } from "./cause.js";
 import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
 import { byId, scrollToTop } from "./dom.js";
@@ -9,9 +10,10 @@ import { keepDrawing } from "./frames.js";
 import { listenToKeys } from "./keys.js";
 import { makeLegend, makeSides } from "./legend.js";
 import { unpack, valueAt } from "./payload.js";
+import { missGroups } from "./misses.js";
 import { makePictures } from "./pictures.js";
 import { plannerView } from "./planner.js";
-import { Plots } from "./plots.js";
+import { Plots, plotOf } from "./plots.js";
 import { makeScene } from "./scene.js";
 import { makeSteps } from "./steps.js";
 import { findingsView, jointTable, markLines, pairTable, sourceView } from "./tables.js";
@@ -28,9 +30,12 @@ async function start() {
   const clock = new Clock(run.duration);
   const bands = run.steps
     .filter((step) => step.status !== "not reached" && !step.hasChildren)
-    .map((step) => ({ start: step.start, end: step.end, tone: step.band }));
+    .map((step) => ({ start: step.start, end: step.end, tone: step.tone }));
 
-  const plots = new Plots(payload, clock, bands);
+  run.groups.push(...missGroups(payload));
+  const missed = run.verdicts.filter(({ status }) => status === "failed").flatMap(({ measures }) => measures.slice(0, 1).map((measure) => plotOf(run, measure)));
+  for (const { id, limits } of run.groups) if (missed.includes(id)) for (const limit of limits) limit.stretches ||= limit.series === null;
+  const plots = new Plots(payload, clock, bands, missed);
   const scene = makeScene(payload, () => plots.panelData("contact"));
   const showCurrentStep = makeSteps(payload, { step: selectStep, verdict: selectVerdict, time: (time) => clock.seek(time) });
   const source = sourceView(payload, selectLine);
@@ -39,11 +44,12 @@ async function start() {
   const showTab = makeTabs([
     { id: "expect", title: "Verdicts", badge: run.verdicts.length ? `${passed}/${run.verdicts.length}` : "", content: verdicts },
     { id: "planner", title: "Planner", content: plannerView(payload, selectStep) },
-    { id: "findings", title: "Findings", badge: String(run.findings.length || ""), content: findingsView(payload, (time) => clock.seek(time)) },
+    { id: "findings", title: "Findings", badge: String(run.findings.filter(({ isWarning }) => isWarning).length || ""), content: findingsView(payload, (time) => clock.seek(time)) },
     { id: "source", title: "Source", content: source },
     { id: "joints", title: "Joints", content: jointTable(payload) },
     { id: "environment", title: "Setup", content: pairTable(run.environment) },
   ]);
+  showCause(run, { step: selectStep, verdict: selectVerdict, time: (time) => clock.seek(time) });
   makeTimeline(payload, clock, { step: selectStep, verdict: selectVerdict });
   const hasPictures = makePictures(payload, clock);
   const drawFilm = scene ? makeFilm(run, clock, drawAt) : () => {};
@@ -103,14 +109,15 @@ async function start() {
     for (const button of verdicts.querySelectorAll("[data-verdict]")) {
       button.toggleAttribute("aria-current", Number(button.dataset.verdict) === index);
     }
-    if (verdict.time !== null) {
+    const time = momentOf(run, verdict);
+    if (time !== null) {
       const owner = run.steps.findIndex(({ id, hasChildren }) => id === verdict.step && !hasChildren);
-      chosen = { step: owner >= 0 ? owner : stepAt(run.steps, verdict.time), time: verdict.time };
-      clock.seek(verdict.time);
+      chosen = { step: owner >= 0 ? owner : stepAt(run.steps, time), time };
+      clock.seek(time);
     }
     scene?.why.show(verdict);
     scene?.pose(clock.time, stepNow(clock.time));
-    if (verdict.plot) plots.reveal(verdict.plot);
+    plots.judge(judgedSpan(run, verdict), verdict.measures.map((measure) => ({ ...measure, plot: plotOf(run, measure) })));
     showTab("expect");
     verdicts.querySelector(`[data-verdict="${index}"]`)?.scrollIntoView({ block: "nearest" });
     address.select({ expect: index + 1 });
@@ -158,7 +165,9 @@ async function start() {
     if (place.expect !== null && run.verdicts[place.expect]) selectVerdict(place.expect);
     else if (place.step !== null && run.steps[place.step]) selectStep(place.step);
     else if (selectFailureAt(place.time)) return;
-    if (place.time !== null) clock.seek(place.time);
+    const verdict = run.verdicts[place.expect ?? -1];
+    const isDecided = verdict && Math.abs(verdict.time - place.time) <= ROUNDING; // the page knows where to look
+    if (place.time !== null && !isDecided) clock.seek(place.time);
   }
 
   const again = () => clock.timeListeners.forEach((listener) => listener(clock.time));

@@ -35,6 +35,8 @@ export class Plot {
     this.colors = [];
     /** @type {PlotData | null} */
     this.data = null;
+    /** The time over which the chosen verdict was judged, with its limits. @type {{start: number, end: number, limits: {value: number, text: string}[]} | null} */
+    this.judged = null;
     this.cursor = 0;
     this.from = 0;
     this.to = 1;
@@ -105,7 +107,7 @@ export class Plot {
 
   /** Draw everything but the cursor. @param {any} pen of a canvas, or one that writes @param {number} width @param {number} height in CSS pixels */
   paint(pen, width, height) {
-    this.axes = new Axes([this.from, this.to], rangeOf(this.data, this.hidden, this.from, this.to), width, height);
+    this.axes = new Axes([this.from, this.to], rangeOf(this.data, this.hidden, this.from, this.to, this.judged?.limits), width, height);
     paint(pen, this, this.axes);
   }
 

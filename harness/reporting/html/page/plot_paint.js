@@ -14,11 +14,12 @@ const UNIT_ROOM = 30; // [CSS pixels] of the word `t [s]` under the lower axis
  * @property {{start: number, end: number, tone: string}[]} bands of the steps
  * @property {(index: number) => string} color of a series
  * @property {(index: number) => number[]} dash of a series
+ * @property {{start: number, end: number, limits: {value: number, text: string}[]} | null} judged
  * @property {number} ratio pixels in one of CSS
  */
 
 /** Everything but the cursor. @param {any} pen @param {Shown} shown @param {import("./axes.js").Axes} axes */
-export function paint(pen, { data, hidden, bands, color, dash, ratio }, axes) {
+export function paint(pen, { data, hidden, bands, color, dash, ratio, judged }, axes) {
   pen.fillStyle = themeColor("--panel");
   pen.fillRect(0, 0, axes.outer.width, axes.outer.height);
   paintBands(pen, bands, axes);
@@ -33,8 +34,13 @@ export function paint(pen, { data, hidden, bands, color, dash, ratio }, axes) {
     pen.strokeStyle = limit.series === null ? themeColor("--bad") : color(limit.series);
     line(pen, axes.left, axes.y(limit.value), axes.right, axes.y(limit.value));
   }
+  for (const { value } of judged?.limits ?? []) {
+    pen.strokeStyle = themeColor("--bad");
+    line(pen, axes.left, axes.y(value), axes.right, axes.y(value));
+  }
   data.series.forEach((series, index) => hidden.has(index) || paintSeries(pen, series, color(index), series.dash ?? dash(index), axes, ratio));
   pen.restore();
+  if (judged) paintJudged(pen, judged, axes);
 }
 
 export function line(pen, x0, y0, x1, y1) {
@@ -54,6 +60,27 @@ function paintBands(pen, bands, axes) {
     const [from, to] = [Math.max(axes.left, axes.x(start)), Math.min(axes.right, axes.x(end))];
     pen.fillStyle = themeColor(tone === "bad" ? "--bad-band" : "--step-band");
     if (to > from) pen.fillRect(from, axes.top, to - from, axes.height);
+  }
+}
+
+/** A bracket over the time that the chosen verdict was judged over, and its limits in words. */
+function paintJudged(pen, { start, end, limits }, axes) {
+  const [from, to] = [start, end].map((time) => Math.max(axes.left, Math.min(axes.right, axes.x(time))));
+  pen.strokeStyle = pen.fillStyle = themeColor("--text");
+  pen.lineWidth = 1.5;
+  const [top, tick] = [axes.top + 2, 7];
+  if (to > from) for (const [x0, y0, x1, y1] of [[from, top, to, top], [from, top, from, top + tick], [to, top, to, top + tick]]) line(pen, x0, y0, x1, y1);
+  pen.font = FONT;
+  pen.textBaseline = "top";
+  pen.textAlign = from > axes.left + axes.width / 2 ? "right" : "left";
+  if (to > from) pen.fillText("judged", pen.textAlign === "right" ? Math.min(to, axes.right) : from + 4, top + 4);
+  pen.fillStyle = themeColor("--bad");
+  pen.textAlign = "right";
+  const [first] = limits;
+  if (first) {
+    const y = axes.y(first.value);
+    pen.textBaseline = y > axes.top + 40 ? "bottom" : "top";
+    pen.fillText(first.text, axes.right - 4, y + (pen.textBaseline === "top" ? 3 : -2));
   }
 }
 

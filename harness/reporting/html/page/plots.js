@@ -5,9 +5,25 @@ import { decodeGroup } from "./payload.js";
 import { Plot } from "./plot.js";
 import { savePng, saveSvg } from "./plot_file.js";
 import { readings } from "./plot_pointer.js";
-import { short } from "./units.js";
+import { number, short } from "./units.js";
 
 const PREFERRED = ["position", "velocity", "effort", "tracking"];
+
+/** From the units of measures to those of plots. */
+const FACTORS = { "m mm": 1e3, "rad °": 180 / Math.PI, "m/s mm/s": 1e3, "rad/s °/s": 180 / Math.PI, "1 % of limit": 100 };
+const BOUNDS = { "<=": "at most", ">=": "at least", "==": "exactly" };
+
+/** The plot of a measure; of a joint that is not the arm's, that of the others. @param {any} run @param {any} measure */
+export function plotOf(run, { plot, detail }) {
+  const has = (id) => run.groups.find((group) => group.id === id)?.series.some(({ name }) => name === detail);
+  return plot && !has(plot) && has(`other_${plot}`) ? `other_${plot}` : plot;
+}
+
+/** The limit of a measure as a line of a plot; none where the plot has another unit. */
+function limitOf({ limit, unit, comparison }, data) {
+  const factor = unit === data.unit ? 1 : FACTORS[`${unit} ${data.unit}`];
+  return factor ? [{ value: factor * limit, text: `${BOUNDS[comparison]} ${number(factor * limit)} ${data.unit}` }] : [];
+}
 
 export class Plots {
   /**
@@ -58,6 +74,17 @@ export class Plots {
     this.#showLegend();
   }
 
+  /** Mark the time over which a verdict was judged, with the limits of what it measured, and show its first quantity. @param {{start: number, end: number}} span @param {any[]} measures with the ids of their plots */
+  judge(span, measures) {
+    const shown = measures.find(({ plot }) => plot)?.plot;
+    if (shown) this.reveal(shown);
+    for (const panel of this.panels) {
+      const mine = measures.filter(({ plot, limit }) => plot === panel.data.id && limit !== null);
+      panel.plot.judged = mine.length ? { ...span, limits: mine.flatMap((measure) => limitOf(measure, panel.data)) } : null;
+      panel.plot.draw();
+    }
+  }
+
   /** Show a group, in the panel that shows it already or else in the last one. @param {string} id */
   reveal(id) {
     const panel = this.panels.find(({ data }) => data.id === id) ?? this.panels.at(-1);
@@ -78,7 +105,7 @@ export class Plots {
 
   /** The lines of a group. */
   series(group) {
-    return decodeGroup(this.payload, group);
+    return group.isDecoded ? group.series : decodeGroup(this.payload, group);
   }
 
   #panel(id, bands) {

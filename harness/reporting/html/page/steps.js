@@ -69,12 +69,13 @@ function ancestors(parents, index) {
 
 function row(step, index, select) {
   const isNamed = !/^steps?[_[]/.test(step.id);
+  const isFault = step.verb === "inject" && step.tone === "good";
   const failure = step.message && step.status !== "passed";
   const title = isNamed ? `${step.id}: ${step.summary}` : step.summary;
   return element(
-    `button.step.${step.tone}`,
+    `button.step.${isFault ? "injected" : step.tone}`,
     { type: "button", onclick: () => select(index), title },
-    element("i.sign", { role: "img", "aria-label": statusWord(step.status) }),
+    element("i.sign", { role: "img", "aria-label": isFault ? "fault injected" : statusWord(step.status) }),
     element("span.title", {}, element("b", {}, ...breakable(isNamed ? step.id : step.summary)), isNamed ? element("span.what", {}, ...breakable(` ${step.summary}`)) : null),
     element("code.place", { title: "Line of the file" }, step.line ? `:${step.line}` : ""),
     element("span.took", {}, step.status === "not reached" ? "–" : duration(step)),

@@ -80,12 +80,14 @@ function findingList({ run }, seek) {
   if (!run.findings.length) {
     return element("p.empty", {}, "Nothing: plan and physics agreed wherever they were compared.");
   }
+  const warnings = run.findings.filter(({ isWarning }) => isWarning);
+  const notes = run.findings.filter(({ isWarning }) => !isWarning);
   return element(
     "ul.findings", {},
-    ...run.findings.map(({ kind, message, time, step }) =>
+    ...[...warnings, ...notes].map(({ kind, message, time, step, isWarning }) =>
       element(
-        "li", {},
-        element("b", {}, kind.replaceAll("_", " ")), element("p", {}, message),
+        isWarning ? "li.warning" : "li", {},
+        element("b", {}, `${isWarning ? "warning" : "note"}: ${kind.replaceAll("_", " ")}`), element("p", {}, message),
         time === null ? null : element("button.link", { type: "button", onclick: () => seek(time) }, `t = ${seconds(time)}`),
         step ? element("span.what", {}, ` ${step}`) : null,
       ),

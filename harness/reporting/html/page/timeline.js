@@ -55,7 +55,7 @@ function band(track, step, index) {
   const isInstant = step.end <= step.start;
   const title = `${index + 1}. ${step.summary}\n${seconds(step.start)} to ${seconds(step.end)}`;
   const words = [element("span", {}, step.summary), element("i", { "aria-hidden": "true" }, ICONS[step.verb] ?? OTHER)];
-  const made = element(`span.band.${step.band}${isInstant ? ".instant" : ""}`, { title }, ...(isInstant ? [] : words));
+  const made = element(`span.band.${step.tone}${isInstant ? ".instant" : ""}${step.verb === "inject" ? ".injected" : ""}`, { title }, ...(isInstant ? [] : words));
   made.style.setProperty("--row", String(Math.min(step.depth, ROWS - 1)));
   made.style.zIndex = step.depth;
   track.append(made);

@@ -1,5 +1,6 @@
 // The expectations: what was measured, the limit, and how much room was left.
 
+import { judgedSpan } from "./cause.js";
 import { element } from "./dom.js";
 import { amount, amounts, seconds, tone } from "./units.js";
 
@@ -25,7 +26,9 @@ export function verdictList({ run }, select) {
 }
 
 function verdict(run, each, index, select) {
-  const place = [each.time === null ? "" : `t = ${seconds(each.time)}`, each.line ? `line ${each.line}` : ""];
+  const { start, end, step } = judgedSpan(run, each);
+  const span = step && end > start ? ` of ${start.toFixed(2)} to ${seconds(end)}` : "";
+  const place = [each.time === null ? "" : `t = ${seconds(each.time)}${span}`, each.line ? `line ${each.line}` : ""];
   return element(
     `button.verdict.${tone(each.status)}`,
     { type: "button", onclick: () => select(index), "data-verdict": index },

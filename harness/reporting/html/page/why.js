@@ -45,9 +45,9 @@ export class Why {
     if (!measure) return [];
     const number = amount(measure.value, measure.unit);
     const color = tone(verdict.status);
-    if (points) return [{ point: addScaled(points.expected, subtract(points.actual, points.expected), 0.5), text: number, tone: color }];
+    if (points) return [{ point: addScaled(points.expected, subtract(points.actual, points.expected), 0.5), text: `${measure.name} ${number}`, tone: color }];
     const body = this.replay.byName.get(verdict.bodies[0]);
-    return body ? [{ point: body.pose.slice(0, 3), text: `${measure.detail} ${number}`, tone: color }] : [];
+    return body ? [{ point: body.pose.slice(0, 3), text: `${measure.detail} ${measure.name} ${number}`, tone: color }] : [];
   }
 
   /** The planned path and the recorded one, with what lies between them made large enough to be seen. */
