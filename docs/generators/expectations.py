@@ -11,6 +11,7 @@ from docs.generators.reference import (
     table,
     words,
 )
+from docs.generators.worked_examples import example
 from harness.core.registry import OWN_PACKAGE, Registry, registry
 from harness.language.annotations import description_of, keys_of
 from harness.language.expectation import KIND, ExpectationFields, PredicateFields, Quantity
@@ -152,7 +153,8 @@ def expectations_reference() -> str:
         is_own = package == OWN_PACKAGE
         notes = [] if is_own else [f"This expectation comes from the package `{package}`."]
         parts += section(word, model, KEYS_BY_PREDICATE, (*notes, JUDGED[model.judged]))
-        parts += [_measured(model.quantities), *(_picture(word) if is_own else [])]
+        parts += [_measured(model.quantities)]
+        parts += [example(word, is_step=False), *_picture(word)] if is_own else []
     parts += part_sections(PREDICATES.values())
     return "\n\n".join(parts) + "\n"
 

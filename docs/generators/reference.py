@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin
 from pydantic import BeforeValidator
 from pydantic.fields import FieldInfo
 
+from docs.generators.worked_examples import example
 from harness.core.errors import ErrorCode
 from harness.core.registry import OWN_PACKAGE
 from harness.language.annotations import description_of, is_model, keys_of
@@ -56,6 +57,8 @@ def steps_reference() -> str:
         package = STEPS.package_of(verb)
         notes = [] if package == OWN_PACKAGE else [f"This step comes from the package `{package}`."]
         parts += section(verb, model, KEYS_BY_VERB, notes)
+        if package == OWN_PACKAGE:
+            parts.append(example(verb, is_step=True))
     parts += part_sections(STEPS.values())
     return "\n\n".join(parts) + "\n"
 

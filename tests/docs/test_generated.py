@@ -5,13 +5,17 @@ import re
 
 import jsonschema
 import pytest
+import yaml
 
 from docs import ROOT
 from docs.generate import GENERATED, RENEW
+from docs.generators.worked_examples import example
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.language.files.source import Source
 from harness.language.files.yaml_file import parse_yaml
+from harness.language.language import PREDICATES
+from harness.language.step import STEPS
 
 FILES = [
     *sorted(data_folder("scenarios").rglob("*.scenario.yaml")),
@@ -31,6 +35,19 @@ def test_a_generated_file_is_current(name):
     if name == "README.md":  # it shows a run, whose numbers depend on the processor family
         written, made = DECIMALS.sub("#", written), DECIMALS.sub("#", made)
     assert written == made, f"{name} is out of date; write it again: {RENEW}"
+
+
+@pytest.mark.parametrize(
+    ("words", "is_step", "page"), [(STEPS, True, "steps"), (PREDICATES, False, "expectations")]
+)
+def test_every_step_and_expectation_has_an_example_from_a_bundled_scenario(words, is_step, page):
+    sections = (ROOT / f"docs/reference/{page}.md").read_text(encoding="utf-8").split("\n## ")
+    by_word = {section.partition("`\n")[0].strip("`"): section for section in sections}
+    for word in words:
+        shown = example(word, is_step=is_step)
+        assert shown in by_word[word]
+        assert re.search(rf"\b{word}\b", shown.partition("```yaml")[2])
+        yaml.safe_load(shown.partition("```yaml\n")[2].removesuffix("```"))
 
 
 def test_the_schema_command_writes_the_committed_schema(tmp_path):

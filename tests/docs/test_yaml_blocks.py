@@ -10,6 +10,9 @@ from tests.commands import harness
 from tests.docs.test_examples import EVERY_PAGE, PAGES, page_id
 
 BLOCK = re.compile(r"(?ms)^```yaml\b.*?\n(.*?)^```$")
+QUOTED = re.compile(r"(?ms)^As in \[.*?^```yaml\n.*?^```$")
+"""A part of a bundled scenario, which is run as a whole."""
+
 UR3E = "robot: {model: ur3e, gripper: rh_p12_rn_a}\n"
 LESSON = "robot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}\nworld: lesson_ur\n"
 TWO_ARMS = """\
@@ -151,7 +154,8 @@ ELSEWHERE = {
 
 
 def blocks(page):
-    return BLOCK.findall(page.read_text(encoding="utf-8"))
+    text = QUOTED.sub("", page.read_text(encoding="utf-8"))
+    return BLOCK.findall(text)
 
 
 CASES = [
