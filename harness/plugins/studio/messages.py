@@ -7,6 +7,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.errors import Problem
 from harness.core.printable import printable
 from harness.plugins.studio.language_help import GRIPPER_TARGET, Names
@@ -18,6 +19,7 @@ from harness.reporting.explanation import explanation_lines
 from harness.robot.description import RobotDescription
 
 MOST_CONTACTS = 8  # contacts that are listed, strongest first
+READ = 0.01  # [s]: the readings of a sensor are their mean over this time
 
 
 def robot_message(cell: LiveCell) -> Message:
@@ -100,6 +102,7 @@ def cell_message(cell: LiveCell) -> Message:
             round(float(positions[index]), 5) for index in cell.simulator.physics.actuated
         ],
         "contacts": [[*pair, round(force, 2)] for pair, force in contacts[:MOST_CONTACTS]],
+        "readings": _readings(cell),
         "width": _width(cell),
         "steps_done": cell.steps_done,
         "step_count": cell.document.step_count,
@@ -158,6 +161,23 @@ def problem_message(problem: Problem, file: str) -> Message:
         "text": printable(f"{where}{problem.message}"),
         "hint": printable(problem.hint),
     }
+
+
+def _readings(cell: LiveCell) -> list[tuple[str, str]]:
+    """What belts, joints of fixtures and sensors of force and torque show now, with units."""
+    shown: list[tuple[str, str]] = []
+    poses = cell.object_poses()
+    for name, presence in cell.cell.presence.items():
+        joint = presence.obj.joint
+        if presence.obj.surface_motion is not None:
+            shown.append((name, f"surface {cell.simulator.surface_motion(name)}"))
+        if joint is not None:
+            shown.append((name, amount(joint.position(poses[name]), joint.unit)))
+    for name in cell.description.wrench_sensors:
+        parts = cell.simulator.wrench(name, READ).reshape(2, 3)
+        force, torque = np.linalg.norm(parts, axis=1)
+        shown.append((name, f"{amount(force, 'N')}, {amount(torque, 'N*m')}"))
+    return shown
 
 
 def _width(cell: LiveCell) -> float | None:

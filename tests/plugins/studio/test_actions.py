@@ -427,6 +427,54 @@ def test_the_written_angles_are_the_rotation(angles):
     assert pose.distance_to(again)[1] < 1e-4
 
 
+CELL = """\
+scenario: a cell
+robot: {model: ur3e, gripper: rh_p12_rn_a, wrench_sensors: {wrist: rh_p12_rn_base}}
+objects:
+  - {name: belt, static: true, surface_velocity: 0, box: {size: [1, 0.2, 0.1]},
+     pose: {xyz: [0, -0.5, 0.05]}}
+  - {name: can, cylinder: {radius: 3 cm, length: 8 cm}, mass: 0.2, pose: {xyz: [0, -0.5, 0.14]}}
+  - name: cabinet
+    static: true
+    pose: {xyz: [0.9, 0, 0.35]}
+    box: {size: [30 cm, 40 cm, 40 cm]}
+    joints:
+      - name: door
+        hinge: {axis: [0, 0, -1], at: [-0.16, 0.2, 0], range: [0, 110 deg], friction: 0.1,
+                start: 30 deg}
+        shapes: [{box: {size: [2 cm, 40 cm, 38 cm]}, pose: {xyz: [-0.162, 0, 0]}}]
+steps: []
+"""
+
+
+def test_a_cell_with_a_belt_a_door_and_a_wrist_sensor_is_shown_with_what_they_read(tmp_path):
+    studio = opened(tmp_path, CELL)
+
+    def shown():
+        return dict(studio.state_message()["readings"])
+
+    bodies = studio_module.robot_message(studio.cell)["bodies"]
+    assert {"belt", "can", "cabinet", "cabinet/door"} <= {*bodies}
+    assert shown()["belt"] == "surface 0 mm/s"
+    assert shown()["cabinet/door"] == "30.0 deg"
+    step = "conveyor: {object: belt, velocity: 10 cm/s}"
+    assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert reply(studio, "execute", step="wait: 1 s")["status"] == "passed"
+    assert shown()["belt"] == "surface 100 mm/s"
+    assert studio.cell.object_poses()["can"].translation[0] == pytest.approx(0.11, abs=2e-3)
+    links = studio.cell.description.links
+    carried = sum(
+        each.inertial.mass for each in links if each.name.startswith("rh_") and each.inertial
+    )
+    force = float(shown()["wrist"].split(" N")[0])
+    assert force == pytest.approx(9.8 * carried, rel=0.02)
+    assert reply(studio, "execute", step="tare: wrist")["status"] == "passed"
+    assert reply(studio, "execute", step="wait: 100 ms")["status"] == "passed"
+    assert shown()["wrist"].split(",")[0] == "0 N"
+    wait = "wait: {until: {beam: {from: [0.3, -0.7, 0.14], to: [0.3, -0.3, 0.14]}}}"
+    assert reply(studio, "execute", step=wait)["status"] == "passed"
+
+
 TWO_ARMS = """\
 scenario: two arms
 robots:

@@ -94,8 +94,9 @@ on("state", (message) => {
   if (width && message.width !== null) width.show(message.width);
   const near = message.nearest ? [[message.nearest[0], message.nearest[1], amount(message.nearest[2], "m")]] : [];
   const touching = message.contacts.map(([a, b, force]) => [a, b, `${force.toFixed(2)} N`]);
-  $("contacts").replaceChildren(...[...near, ...touching].map(([a, b, value], index) => element("div", { class: "contact" },
-    element("span", {}, near.length && !index ? `nearest: ${a} – ${b}` : `${a} – ${b}`), element("output", {}, value))));
+  const pairs = [...near, ...touching].map(([a, b, value], index) => [near.length && !index ? `nearest: ${a} – ${b}` : `${a} – ${b}`, value]);
+  $("contacts").replaceChildren(...[...message.readings, ...pairs].map(([text, value]) => element("div", { class: "contact" },
+    element("span", {}, text), element("output", {}, value))));
   editor.showDone(message.steps_done);
 });
 
