@@ -42,7 +42,8 @@ class ProgressLines:
 
     One case at a time has its file as a headline and its steps below, each above those that are
     nested in it; with several at the same time, every line begins with the case that it belongs to.
-    In a pipe or a file, and with very many cases, a case is one line, written when it has ended. On
+    In a pipe or a file, and with very many cases, a case is one line, written when it has ended; a
+    folded case, such as a sample whose rate is printed at the end, is none if it passed. On
     a terminal the last line says what is going on now: the step or the part of the report, how far
     it is, and how many of the cases are done.
     """
@@ -55,6 +56,7 @@ class ProgressLines:
         is_side_by_side: bool,
         style: Style,
         is_brief: bool = False,
+        is_folded: Callable[[int], bool] = lambda _index: False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._output = output
@@ -62,6 +64,7 @@ class ProgressLines:
         self._style = style
         self._is_side_by_side = is_side_by_side
         self._is_brief = is_brief or not output.stream.isatty()
+        self._is_folded = is_folded
         self._clock = clock
         self._headline = -1
         self._noted: set[str] = set()  # every sample of a file has the same
@@ -83,7 +86,7 @@ class ProgressLines:
         if not self._output.stream.isatty():
             slow_work_on_stderr(index, event)
         if isinstance(event, StepStarted | Working):
-            if not self._is_brief:
+            if not self._hides_steps(index):
                 self._begin(index)
             is_frequent = isinstance(event, Working) and event.done > 0
             self._output.status(self._status(event, index), is_frequent=is_frequent)
@@ -105,7 +108,7 @@ class ProgressLines:
         """Show the steps that a step is nested in, before its own line."""
         outer = self._open[index]
         for depth, each in enumerate(outer):
-            if not (each.has_head or self._is_brief):
+            if not (each.has_head or self._hides_steps(index)):
                 each.has_head = True
                 self._begin(index)
                 self._line(index, step_head(each.begin, depth))
@@ -119,17 +122,22 @@ class ProgressLines:
         if outer and event.status == "failed":
             outer[-1].is_explained = True
         is_shown = step is not None and step.has_head and (is_good or step.is_explained)
-        if self._is_brief or is_shown:
+        if self._hides_steps(index) or is_shown:
             return
         self._begin(index)
         speed = None if step is None else _speed(step.begin, event)
         self._line(index, step_done(replace(event, speed=speed), self._style, len(outer)))
 
+    def _hides_steps(self, index: int) -> bool:
+        return self._is_brief or self._is_folded(index)
+
     def _verdict(self, index: int, result: CaseResult) -> None:
         """Show a case's outcome, its report written or not."""
         self._shown[index] = result.outcome
+        if result.outcome == "passed" and self._is_folded(index):
+            return
         line = case_line(result, self._style)
-        if self._is_brief:
+        if self._hides_steps(index):
             self._line(index, f"  {line}" if self._is_side_by_side else self._named(index, line))
         else:
             self._begin(index)
@@ -167,7 +175,7 @@ class ProgressLines:
         passed = f"  {time - begin:.0f} s" if time - begin >= 1.0 else ""
         if event is None:
             return f"  starting{passed}"
-        has_headline = not (self._is_brief or self._is_side_by_side)
+        has_headline = not (self._hides_steps(index) or self._is_side_by_side)
         name = "    " if has_headline else f"  {self._cases[index]}:  "
         if isinstance(event, StepStarted):
             return f"{name}{step_running(event, self._style).strip()}{passed}"

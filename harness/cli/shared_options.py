@@ -93,7 +93,7 @@ def add_format(command: argparse.ArgumentParser, *, is_of_runs: bool = True) -> 
 
 def add_verbose(command: argparse.ArgumentParser) -> None:
     """`--verbose`, of commands that print results of runs."""
-    text = "show digests, and how many times faster than real time the simulation was"
+    text = "show digests, samples that passed, and how much faster than real time it was"
     command.add_argument("-v", "--verbose", action="store_true", help=text)
 
 

@@ -47,6 +47,33 @@ def reported(stream, *events, style=PLAIN):
     return screen_lines(stream.getvalue())[:-1]
 
 
+@pytest.mark.parametrize("stream", [Terminal, io.StringIO])
+def test_a_sample_that_passed_is_no_line(stream):
+    written = stream()
+    progress = ProgressLines(
+        Output(written), ["a", "b", "c"], is_side_by_side=False, style=PLAIN,
+        is_brief=True, is_folded=lambda index: index < 2,
+    )  # fmt: skip
+    for index, outcome in enumerate(("passed", "failed", "passed")):
+        progress.step(index, event(StepStarted, 0.0, 0.0))
+        progress.result(index, CaseResult("abc"[index], "", "Pick", outcome))
+    shown = [line[:9].strip() for line in screen_lines(written.getvalue()) if line[1:3] == "  "]
+    assert shown == ["b  failed", "c  passed"]
+
+
+def test_steps_of_samples_are_not_shown_among_those_of_other_cases():
+    written = Terminal()
+    progress = ProgressLines(
+        Output(written), ["a", "b"], is_side_by_side=False, style=PLAIN, is_folded=lambda i: i == 0
+    )
+    for index in (0, 1):
+        for kind in (StepStarted, StepFinished):
+            progress.step(index, event(kind, 1.0, 1.0))
+        progress.result(index, CaseResult("ab"[index], "", "Pick", "passed"))
+    steps = [line for line in screen_lines(written.getvalue()) if "1/2  pick" in line]
+    assert len(steps) == 1
+
+
 def nested(outcome, message=""):
     """A step with two steps nested in it, of which the second one has an outcome."""
     return [

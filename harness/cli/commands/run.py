@@ -102,11 +102,13 @@ def _run_files(call: RunCall) -> int:
         from harness.reporting.terminal import Style
 
         names = _case_names(arguments, suite)
+        has_rates = arguments.repeat == 1 and len(names) > 1 and not arguments.verbose
         progress = ProgressLines(
             output(),
             names,
             is_side_by_side=arguments.workers > 1 and not arguments.in_process,
             is_brief=len(names) > BRIEF_FROM,
+            is_folded=lambda index: has_rates and suite.plan[index].rate_key is not None,
             style=Style.of(sys.stdout, is_verbose=arguments.verbose),
         )
 
