@@ -1,0 +1,1 @@
+"""Masses of links whose file gives none."""

@@ -1,0 +1,1 @@
+"""What estimates the masses of links."""
