@@ -261,6 +261,9 @@ def metres_per_unit(geometry: Mesh) -> float:
     if size > MESH_FILE:
         largest = MESH_FILE / 1e6
         raise RobotError(f"{path.name} has {size / 1e6:.0f} MB; at most {largest:.0f} MB are read")
+    if header.startswith(b"version https://git-lfs"):
+        how = "`git lfs pull` in its repository gets the file"
+        raise RobotError(f"{path.name} is a pointer of Git LFS and no mesh: {how}")
     if suffix != ".dae":
         return 1.0
     return metres_of_unit(header, path.name)

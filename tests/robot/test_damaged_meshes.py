@@ -136,6 +136,23 @@ def test_a_robot_with_a_damaged_mesh_is_refused_at_its_line(tmp_path, capsys, mo
     assert "Traceback" not in error
 
 
+POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 98284\n"
+
+
+@pytest.mark.parametrize("name", ["link.stl", "link.dae", "link.obj"])
+def test_a_mesh_that_a_clone_left_in_git_lfs_says_how_to_get_it(
+    tmp_path, capsys, monkeypatch, name
+):
+    file_of(tmp_path, name, POINTER)
+    write_arm(tmp_path, URDF.replace(SHAPE, MESH.format(name), 1))
+    monkeypatch.chdir(tmp_path)
+    assert main(["robot", "check", "arm.urdf"]) == 2
+    error = " ".join(capsys.readouterr().err.split())
+    assert "arm.urdf:4:" in error
+    assert f"mesh {name} is a pointer of Git LFS and no mesh" in error
+    assert "`git lfs pull`" in error
+
+
 @pytest.mark.nightly
 def test_triangles_without_order_do_not_fill_the_memory():
     rng = np.random.default_rng(0)

@@ -129,10 +129,11 @@ class LinkReader:
         if not stated.inertia.any():
             return stated
         moments, axes = np.linalg.eigh(stated.inertia)
-        if moments[0] < -1e-3 * abs(moments).max():
+        if moments[0] < -moments[2]:
             tensor.refuse(
                 f"link '{link}' has a negative moment of inertia, {moments[0]:.3g} kg m^2",
-                "the tensor is about the centre of mass and positive definite",
+                "the tensor is about the centre of mass and positive definite; without <inertia>"
+                " it is estimated from the shapes",
             )
         raised = possible_moments(moments, stated.mass)
         if np.array_equal(raised, moments):

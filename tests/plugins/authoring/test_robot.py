@@ -97,7 +97,12 @@ UNIT = INERTIAL.replace('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="1" iyy="1" iz
 @pytest.mark.parametrize("link", ["lower", "wrist"])
 @pytest.mark.parametrize(
     ("stated", "moments"),
-    [('izz="0.05"', "0.01, 0.01, 0.05"), ('izz="-1e-06"', "-1e-06, 0.01, 0.01")],
+    [
+        ('izz="0.05"', "0.01, 0.01, 0.05"),
+        ('izz="-1e-06"', "-1e-06, 0.01, 0.01"),
+        ('izz="-0.004"', "-0.004, 0.01, 0.01"),
+        ('izz="0.002" ixz="0.006"', "-0.00121, 0.01, 0.0132"),
+    ],
 )
 def test_a_corrected_inertia_is_reported_once(link, stated, moments, folder, capsys):
     other = INERTIAL.replace('izz="0.002"', stated)
@@ -106,6 +111,15 @@ def test_a_corrected_inertia_is_reported_once(link, stated, moments, folder, cap
     _, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf", "--samples", "5")
     said = f"link '{link}': no body has the principal moments of inertia {moments} kg m^2"
     assert page.count(said) == 1
+
+
+def test_an_inertia_with_a_sign_that_no_rounding_gives_is_refused(folder, capsys):
+    other = INERTIAL.replace('izz="0.002"', 'izz="-0.02"')
+    write_arm(folder, URDF.replace(f'"lower">{INERTIAL}', f'"lower">{other}'), SRDF)
+    assert main(["robot", "check", "arm.urdf", "--srdf", "arm.srdf"]) == 2
+    said = capsys.readouterr().err
+    assert "negative moment of inertia, -0.02 kg m^2" in said
+    assert "without" in said.split()
 
 
 @pytest.mark.parametrize(
