@@ -15,7 +15,7 @@ from harness.recording.signals import ContactRecord, Signals
 from harness.session.execute import Execution
 from harness.session.observation.beliefs import believed_poses
 from harness.session.observation.contacts import contact_records
-from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
+from harness.session.observation.findings import notes_of_files, overlap_findings
 from harness.session.observation.observe import observed_signals, report_findings
 from harness.session.observation.observer import observed
 from harness.session.pictures import with_picture_names
@@ -101,7 +101,6 @@ def _recorded(
             *prepared.about_file,
             *notes_of_files(prepared.notes),
             *overlap_findings(simulator.overlaps_at_start),
-            *findings_of(steps),
             *seen,
         ),
         source=prepared.loaded.text,

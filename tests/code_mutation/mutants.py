@@ -23,6 +23,7 @@ SCOPE = (
     "harness/plugins/faults/observers",
     "harness/plugins/objects",
     "harness/plugins/paths",
+    "harness/plugins/remarks",
 )
 
 

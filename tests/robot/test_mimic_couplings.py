@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.session.observation.couplings import coupling_findings
+from harness.plugins.remarks.observers.couplings import coupling_findings
 from harness.simulation.robot_mjcf import joint_range
 from tests.robot.arm_files import load_arm, write_arm
 from tests.robot.hands import BLOCK, HAND, PALM, PICK, SIX
@@ -79,6 +79,6 @@ def test_light_fingers_with_a_large_damping_stay_parallel_and_hold(tmp_path, dam
     moved = saved.signals.joint_positions.copy()
     moved[500, -1] += 0.3
     lagging = replace(saved, signals=replace(saved.signals, joint_positions=moved))
-    [finding] = coupling_findings(lagging, load_arm(tmp_path, srdf=None))
+    [finding] = coupling_findings(lagging.signals, load_arm(tmp_path, srdf=None))
     assert finding.values["joint"] == name
     assert finding.values["error"] == pytest.approx(0.3, abs=0.02)

@@ -15,9 +15,7 @@ from harness.core.solids import volume_of
 from harness.core.world import WorldObject
 from harness.language.annotations import unit_of
 from harness.ports.scene import Touch
-from harness.recording.explanation import LoweredMargins
 from harness.recording.run import Finding, Run
-from harness.recording.step_record import StepRecord
 
 LARGE = 5.0  # size from which a movable object is probably given in millimetres [m]
 REACHED = {"s": LONGEST_RUN, "m": LONGEST_RUN, "m/s": 100.0, "N": 1e5, "N*m": 1e5}
@@ -140,32 +138,3 @@ def overlap_findings(touches: Sequence[Touch]) -> tuple[Finding, ...]:
         )
         for touch in touches
     )
-
-
-def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
-    """Waits that took no time, and pairs that may start a motion nearer than planned.
-
-    Task Constructor allows the pair object-support while lifting; here it may stay as near as it
-    stood, and no nearer.
-    """
-    found: list[Finding] = []
-    for step in steps:
-        if step.verb == "wait" and step.status == "passed" and step.end_time == step.start_time:
-            message = f"`{step.summary}` held at once, so that nothing was waited for"
-            found.append(Finding("held_at_once", message, step.start_time, step.id))
-        lowered = step.explanation.find(LoweredMargins)
-        for entry in lowered.lowered_margins if lowered else ():
-            first, second = entry.pair
-            distance = entry.start_distance * 1e3
-            stood = f"{-distance:.1f} mm deep" if distance < 0 else f"{distance:.1f} mm apart"
-            found.append(
-                Finding(
-                    kind="lowered_margin",
-                    message=f"{first} and {second} stood {stood} when the motion began, and were"
-                    " let stay so near, no nearer",
-                    time=step.start_time,
-                    step=step.id,
-                    values=entry.plain(),
-                )
-            )
-    return tuple(found)

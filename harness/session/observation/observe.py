@@ -7,7 +7,6 @@ from dataclasses import replace
 from harness.judging.facts import remembered_facts
 from harness.recording.run import Finding, Run
 from harness.recording.signals import Signals
-from harness.session.observation.couplings import coupling_findings
 from harness.session.observation.findings import slowed_videos
 from harness.session.observation.tracking import as_commanded, plan_against_physics
 from harness.session.prepare import Prepared
@@ -53,5 +52,5 @@ def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Fin
     return (
         *(*looks_differ(run.objects), *overlaps),
         *slowed_videos(run, prepared.program.videos),
-        *(*differences, *coupling_findings(run, description)),
+        *differences,
     )

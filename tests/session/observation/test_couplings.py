@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
+from harness.plugins.remarks.observers.couplings import coupling_findings
 from harness.robot.mechanism import Joint, Mimic
-from harness.session.observation.couplings import coupling_findings
 from tests.judging.synthetic_run import changed, make_run
 
 N = 10
@@ -34,7 +34,7 @@ def findings(slide=0.0, turn=0.0, at=4):
     positions = np.tile((0.02, 0.06, 0.02), (N, 1))
     positions[at, 1] += slide
     positions[at, 2] += turn
-    return coupling_findings(changed(make_run(N), joint_positions=positions), HAND)
+    return coupling_findings(changed(make_run(N), joint_positions=positions).signals, HAND)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -56,4 +56,4 @@ def test_the_joint_that_is_furthest_off_by_its_own_limit_is_reported(sign):
 
 def test_positions_that_are_missing_or_were_never_recorded_are_no_finding():
     assert findings(slide=np.nan) == ()
-    assert coupling_findings(make_run(0), HAND) == ()
+    assert coupling_findings(make_run(0).signals, HAND) == ()

@@ -1,0 +1,1 @@
+"""What users should know of a run besides its verdicts."""

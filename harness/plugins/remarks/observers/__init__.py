@@ -1,0 +1,1 @@
+"""Findings that follow from the record of a run alone."""
