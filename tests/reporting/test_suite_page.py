@@ -167,6 +167,7 @@ def test_a_row_without_a_bar_says_why(tmp_path, visit):
     results = [
         replace(passed(0), verdicts=()),
         replace(passed(1), verdicts=(turned,)),
+        replace(passed(2), verdicts=(), steps=(replace(STUCK.steps[0], status="expected error"),)),
         STUCK,
         replace(STUCK, verdicts=(verdict(0.06),)),
         INVALID,
@@ -177,6 +178,7 @@ def test_a_row_without_a_bar_says_why(tmp_path, visit):
     assert said == [
         "expects nothing",
         "10.0 mm (no bar: its limit is 0) turned by 30.0°",
+        "a step failed as expected",
         "expects nothing",
         "a step failed; what was judged holds",
         "not judged",

@@ -50,6 +50,7 @@ def row_facts(
         "case": result.case,
         "again": case.again,
         "expects": len(result.verdicts),
+        "expected": sum(step.status == "expected error" for step in result.steps),
         "report": result.report_dir,
         "pages": [
             {"name": Path(page).stem.replace("_", " "), "link": link_from(folder, page)}

@@ -174,6 +174,31 @@ def test_a_picture_says_what_failed_in_its_step_and_not_that_the_motion_passed(g
         assert (graded / "students/low" / link).is_file()
 
 
+@pytest.mark.parametrize(
+    "steps",
+    [
+        "[{move_to: {joints: {joint1: 0.5}}}, {move_to: {joints: {joint1: 9}}}]",
+        "[{gripper: open}, {move_to: {position: {xyz: [3, 0, 0]}, pitch: 0}}]",
+    ],
+)
+def test_what_was_not_reached_is_no_failure_of_a_picture(tmp_path, browser, steps):
+    for folder in ("safe", "all"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "safe/safe.scenario.yaml").write_text(SAFE)
+    (tmp_path / "safe/assignment.yaml").write_text("assignment: a\nscenario: safe.scenario.yaml\n")
+    (tmp_path / "all/one.scenario.yaml").write_text(f"scenario: a\nsteps: {steps}\n")
+    words = ["grade-class", str(tmp_path / "safe"), str(tmp_path / "all")]
+    assert main([*words, "--report-dir", str(tmp_path / "grades")]) == 1
+    with closing(new_context(browser, viewport={"width": 1440, "height": 900})) as context:
+        opened = context.new_page()
+        opened.goto((tmp_path / "grades/students/one/index.html").as_uri())
+        captions = opened.locator("figcaption").all_inner_texts()
+    [where] = [each for each in captions if "where the robot stopped" in each]
+    [why] = [each for each in captions if "the goal that was refused" in each]
+    assert (where.split()[0], why.split()[0]) == ("2/2", "2/2")
+    assert not any("home" in each for each in captions), "that it is reached was not judged"
+
+
 def test_a_mistake_of_a_file_is_said_once(graded):
     assert page(graded, "typo").count("no verb is called") == 1
 

@@ -14,7 +14,8 @@ export function drawCampaign() {
   const [across, up, kind] = ["x", "y", "kind"].map((name) => section.querySelector(`select[name=${name}]`));
   const count = data.parameters.length, columns = { cause: count + 1, name: count + 2, link: count + 3 };
   const opened = data.points.filter((point) => point[columns.link]).length;
-  const nothing = `Point at a run to read its values. ${opened === data.points.length ? "A click opens it." : opened ? `A click opens one of the ${opened} with a report, in a ring, and shows the row of another one; --keep all writes every report.` : "A click shows its row: no run has a report, which --keep all writes."}`;
+  const click = opened === data.points.length ? "A click opens it." : `A click ${opened ? `opens one of the ${opened} with a report, in a ring, and ` : ""}shows the row of one without a report; ${caption.dataset.others}.`;
+  const nothing = `Point at a run to read its values. ${click}`;
   let dots = [], cells = [], marked = null;
 
   for (const select of [across, up]) axes.forEach((axis) => select.add(new Option(axis.label, axis.index)));

@@ -96,9 +96,9 @@ function hasNearest({ margin, holds, outcome }) {
 }
 
 /** Why a row says nothing of a margin. */
-function withoutNearest({ outcome, expects, margin }) {
+function withoutNearest({ outcome, expects, expected, margin }) {
   if (outcome === "invalid" || outcome === "error") return "not judged";
-  if (!expects) return "expects nothing";
+  if (!expects) return expected ? `${expected === 1 ? "a step" : `${expected} steps`} failed as expected` : "expects nothing";
   return outcome === "failed" && margin ? "a step failed; what was judged holds" : "judged without a margin";
 }
 

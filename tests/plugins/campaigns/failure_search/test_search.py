@@ -89,6 +89,8 @@ def test_rows_of_a_search_offer_only_commands_that_run(tmp_path, visit):
     [page_file] = (tmp_path / "reports").rglob("index.html")
     page = visit(page_file).page
     assert page.locator("tr.case").count() == 12
+    said = page.inner_text("#map output")
+    assert said.endswith("shows the row of one without a report; no run of a search has one.")
     failed = page.locator("tr.case[data-outcome=failed]")
     failed.first.locator("summary").click()
     command = failed.first.locator(".command code").inner_text().split()
