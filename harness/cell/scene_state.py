@@ -153,17 +153,6 @@ class SceneState:
         """T_world_object as the physics has it now, or as it is expected later."""
         return self.expected.get(name) or self.simulator.object_pose(name)
 
-    @contextmanager
-    def expecting(self, name: str, pose: SE3) -> Generator[None]:
-        """Plan as if an object stood at T_world_object, where a belt will have brought it."""
-        self.expected[name] = pose
-        self.sync_scene()
-        try:
-            yield
-        finally:
-            del self.expected[name]
-            self.sync_scene()
-
     def frame(self, name: str) -> SE3:
         """T_world_frame of `world`, a link, or an object as the physics has it now."""
         if name == "world":

@@ -50,6 +50,7 @@ class StepFields(SpecModel):
         is_arc: Whether that motion is an arc, which three of its points determine.
         moves_gripper: Whether the step commands the gripper while the arm keeps its place.
         moves_objects: Whether the step lets objects appear, vanish or jump.
+        is_at_once: Whether the steps inside it are carried out at once.
         simulated_only: Why no real robot can carry the step out, and what a user does instead; None
             where one can. `harness run --robot ros2` refuses it with both.
         keys_inside: Keys next to the verb that may stand inside its content as well.
@@ -67,6 +68,7 @@ class StepFields(SpecModel):
     moves_gripper: ClassVar[bool] = False
     keeps_arm_still: ClassVar[bool] = False
     moves_objects: ClassVar[bool] = False
+    is_at_once: ClassVar[bool] = False
     detaches_object: ClassVar[bool] = False
     simulated_only: ClassVar[tuple[str, str] | None] = None
     keys_inside: ClassVar[tuple[str, ...]] = ()

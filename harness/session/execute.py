@@ -98,7 +98,7 @@ class _Runner:
     def _attempt(self, step: ProgramStep) -> Failure | None:
         self.depth += 1
         try:
-            _tracker.execute(step.spec, self.cell)
+            _tracker.execute(step, self.cell)
         except (StepFailed, RunEndedError) as failure:
             return failure
         finally:

@@ -8,8 +8,10 @@ from typing import ClassVar
 
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach
+from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.cell.step import Step
+from harness.cell.watched_goals import Predicted, watched_goals
 from harness.core.registry import Plugin, absent_plugins, registry
 from harness.core.spatial import SE3
 from harness.steps.grasp import Grasp
@@ -23,12 +25,14 @@ class Tracker(Plugin, ABC):
 
     @staticmethod
     @abstractmethod
-    def execute(spec: Step, cell: Cell) -> None:
+    def execute(spec: Step, cell: Cell) -> dict[str, Predicted]:
         """Carry out a step; a motion to where an object is carried ends when the object is there.
 
+        Returns:
+            Where the objects that are carried will be after a duration [s], by their names.
+
         Raises:
-            StepFailed: The step cannot be carried out, the arm cannot be there in time, or the
-                object moved elsewhere by itself.
+            StepFailed: The step cannot be carried out, or the arm cannot be there in time.
         """
 
     @staticmethod
@@ -69,16 +73,13 @@ def tracker() -> Tracker:
     return registry(Tracker.plugin_kind).find("belt")()
 
 
-def execute(spec: Step, cell: Cell) -> None:
-    """Carry out a step, with a plug-in where it moves an arm.
-
-    Raises:
-        StepFailed: It cannot be carried out.
-    """
-    if spec.moves_arm and "belt" in registry(Tracker.plugin_kind):
-        tracker().execute(spec, cell)
-    else:
-        spec.execute(cell)
+def execute(step: ProgramStep, cell: Cell) -> None:
+    """Carry out a step, with a plug-in where it moves an arm; may fail as `watched_goals` says."""
+    with watched_goals([step], cell) as known:
+        if step.spec.moves_arm and "belt" in registry(Tracker.plugin_kind):
+            known |= tracker().execute(step.spec, cell)
+        else:
+            step.spec.execute(cell)
 
 
 def check_track(track: bool, at: At) -> None:

@@ -121,6 +121,20 @@ def test_a_failed_motion_of_the_core_has_its_error_and_no_stages(core, tmp_path)
     assert "Traceback" not in done.stdout + done.stderr
 
 
+def test_a_goal_that_rolls_away_is_missed_in_the_core_too(core, tmp_path):
+    file = tmp_path / "ball.scenario.yaml"
+    file.write_text(
+        "scenario: t\nrobot: open_manipulator_x\nobjects:\n"
+        "  - {name: plate, static: true, box: {size: [0.5, 0.3, 0.02]},"
+        " pose: {xyz: [0.2, -0.2, 0.03], rpy: [0, 0.05, 0]}}\n"
+        "  - {name: ball, sphere: {radius: 2 cm}, mass: 0.05, pose: {xyz: [0.15, -0.2, 0.0625]}}\n"
+        "steps: [{move_to: {position: {frame: ball, xyz: [0, 0, 0.1]}}}]\n"
+    )
+    done = core("run", file, "--no-report", "--in-process")
+    assert done.returncode == 1
+    assert "'ball', in whose frame the goal is, moved by itself" in " ".join(done.stdout.split())
+
+
 def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     file = tmp_path / "formula.scenario.yaml"
     file.write_text(

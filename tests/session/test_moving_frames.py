@@ -123,6 +123,77 @@ def test_what_moved_by_itself_meanwhile_is_missed_by_so_much(joint, tilt, name, 
     assert f"t={step.end_time:.3f} s" in step.message
 
 
+ON_THE_WAY = (
+    "sequence: [{ptp: {position: {frame: cabinet/part, xyz: [0, 0, 0.1]}, pitch: 30 deg}},"
+    " {ptp: {joints: {joint1: 0}}}]"
+)
+
+
+def missed(run):
+    """The last step, and the moment at which its message says that the goal was missed [s]."""
+    step = run.steps[-1]
+    assert step.error_code == "MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE", step.message
+    return step, float(re.search(r"at t=([0-9.]+) s the goal was", step.message)[1])
+
+
+def test_a_goal_on_the_way_is_missed_when_the_arm_passes(tmp_path):
+    step, moment = missed(run_by_themselves(tmp_path, DRAWER % -0.1, 0, ON_THE_WAY))
+    assert step.start_time + 0.3 < moment < step.end_time - 0.3
+    assert step.message.endswith("from where the arm passed")
+
+
+@pytest.mark.nightly
+def test_a_goal_on_the_way_that_moves_after_the_arm_has_passed_is_met(tmp_path):
+    """A ball rolls slowly: by less than 5 mm and 0.05 rad until the arm passes, then by more."""
+    longer = "{ptp: {joints: {joint1: -1.4}}}, {ptp: {joints: {joint1: 1.4}}}"
+    steps = ON_THE_WAY.replace("{ptp: {joints: {joint1: 0}}}", longer)
+    steps = steps.replace("cabinet/part, xyz: [0, 0, 0.1]", "ball, xyz: [0, 0, 0.07]")
+    run = run_by_themselves(tmp_path, DRAWER % 0, 0.001, steps)
+    assert run.steps[-1].status == "passed", run.steps[-1].message
+    first, last = (SE3.from_vector(run.signals.object_poses["ball"][row]) for row in (0, -1))
+    assert first.distance_to(last)[1] > 0.1
+
+
+PLACE = "pick: ball}, {place: {object: ball, pose: {frame: cabinet/part, xyz: [0, 0, 0.071]}}"
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("damping", [80, 1e6])
+def test_a_place_in_a_drawer_that_closes_meanwhile_is_missed(damping, tmp_path):
+    joint = (DRAWER % -0.1).replace("damping: 5", f"damping: {damping}")
+    run = run_by_themselves(tmp_path, joint, 0, PLACE)
+    place = next(step for step in run.steps if step.verb == "place")
+    code = "MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE" if damping == 80 else ""
+    assert place.error_code == code, place.message
+
+
+TWO_ARMS = """scenario: two arms at once
+robots:
+  left: {model: open_manipulator_x, base: {xyz: [0, 0, 0]}}
+  right: {model: open_manipulator_x, base: {xyz: [0, 1, 0]}}
+objects:
+  - {name: plate, static: true, box: {size: [0.5, 0.3, 0.02]}, pose: {xyz: [0.2, -0.2, 0.03],
+     rpy: [0, %s, 0]}}
+  - {name: ball, sphere: {radius: 2 cm}, mass: 0.05, pose: {xyz: [0.15, -0.2, 0.0625]}}
+steps:
+  - parallel:
+      - move_to: {position: {frame: ball, xyz: [0, 0, 0.1]}}
+        robot: left
+      - ptp: {joints: {right_joint1: 1.2}}
+        robot: right
+"""
+
+
+@pytest.mark.parametrize("tilt", [0.05, pytest.param(0, marks=pytest.mark.nightly)])
+def test_a_goal_of_an_arm_at_once_with_another_is_missed(tilt, recorded_run):
+    folder = recorded_run(TWO_ARMS % tilt, "failed" if tilt else "passed")
+    run = read_run(folder / "run").run
+    if tilt:
+        step = run.steps[0]
+        assert step.error_code == "MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE"
+        assert "'ball', in whose frame the goal is, moved by itself" in step.message
+
+
 def test_what_rests_again_is_not_missed(tmp_path):
     steps = f"settle: 1 mm/s, timeout: 9 s}}, {{{GO % 'cabinet/part'}"
     run = run_by_themselves(tmp_path, DRAWER % -0.1, 0, steps)

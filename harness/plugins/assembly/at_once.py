@@ -10,6 +10,7 @@ from harness.cell.cell import Cell
 from harness.cell.program import ProgramStep
 from harness.cell.runner import End, Failure, RunEndedError
 from harness.cell.scene_state import StepNotes
+from harness.cell.watched_goals import watched_goals
 from harness.core.errors import StepFailed
 from harness.plugins.assembly.merged_motion import MergedMotion
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
@@ -164,7 +165,8 @@ class AtOnce:
         if begun:
             cell.step, cell.notes = self._around
             start = cell.simulator.time
-            merged.follow()
+            with watched_goals([each.part for each, _ in begun if each.part], cell):
+                merged.follow()
             ends = {"end_time": cell.simulator.time, "end_index": cell.simulator.sample_count}
             for (branch, place), delay in zip(begun, merged.delays, strict=True):
                 records[place] = replace(records[place], **ends)

@@ -13,7 +13,7 @@ from harness.cell.grasp_choice import ChosenApproach, with_arm
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.plugins.belts.ride import LOOK_AHEAD, Ride
+from harness.plugins.belts.ride import LOOK_AHEAD, Ride, expecting
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion, TimedLinkMotion
@@ -161,7 +161,7 @@ def _meeting_at(
         if not ride.is_on(begin + 2 * pace + search.closing):
             break
         waiting = ride.pose(begin + 0.5 * pace)
-        with cell.expecting(ride.object, waiting):
+        with expecting(ride.object, waiting, cell):
             chosen = search.choose()
         try:
             company, state = _company(begin, pace, waiting, chosen, ride, search, cell)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +59,18 @@ class Ride:
         """The time until the object leaves the belt, at most `LOOK_AHEAD` [s]."""
         times = np.arange(0.0, LOOK_AHEAD, 0.05)
         return next((float(time) for time in times if not self.is_on(float(time))), LOOK_AHEAD)
+
+
+@contextmanager
+def expecting(name: str, pose: SE3, cell: Cell) -> Generator[None]:
+    """Plan as if an object stood at T_world_object, where a belt will have brought it."""
+    cell.expected[name] = pose
+    cell.sync_scene()
+    try:
+        yield
+    finally:
+        del cell.expected[name]
+        cell.sync_scene()
 
 
 def ride_of(name: str, cell: Cell, pose: SE3 | None = None) -> Ride:

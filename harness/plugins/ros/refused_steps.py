@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.cell.program import Program, ProgramStep
 from harness.cell.step import Step
+from harness.cell.watched_goals import places_in
 from harness.core.errors import SpecError
 from harness.core.geometry import reach
 from harness.core.world import WorldObject
@@ -67,11 +68,12 @@ def _reason(step: ProgramStep, program: Program) -> Reason | None:
     if spec.moves_objects and _changed(spec, program) & {*physical}:
         return _CELL
     in_motion = isinstance(spec, Pick | Place) and spec.track
-    if in_motion or (spec.moves_arm and _frames(spec.model_dump()) & _carried(physical.values())):
+    frames = {place.frame for place in places_in(spec)} if spec.moves_arm else set[str]()
+    if in_motion or frames & _carried(physical.values()):
         return _BELT
     if isinstance(spec, Pick | Grasp) and spec.mode == "weld":
         return _WELD
-    if spec.verb == "parallel" and any(isinstance(c.spec, Gripper) for c in step.children):
+    if spec.is_at_once and any(isinstance(c.spec, Gripper) for c in step.children):
         return _AT_ONCE
     return None
 
@@ -85,15 +87,6 @@ def _changed(spec: Step, program: Program) -> set[str]:
         return {getattr(each, "name", each) for each in content["objects"]}
     cleared = program.all_objects() if content.get("world") else program.later_objects.values()
     return {obj.name for obj in cleared}
-
-
-def _frames(content: object) -> set[str]:
-    """Every `frame` inside a step's content."""
-    if isinstance(content, list | tuple):
-        return {name for each in content for name in _frames(each)}
-    if not isinstance(content, dict):
-        return set()
-    return {str(content.get("frame"))} | _frames([*content.values()])
 
 
 def _carried(objects: Collection[WorldObject]) -> set[str]:

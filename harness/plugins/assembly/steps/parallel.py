@@ -43,6 +43,7 @@ class Parallel(Step):
 
     verb: ClassVar[str] = "parallel"
     plans: ClassVar[bool] = False
+    is_at_once: ClassVar[bool] = True
     results = (Delays,)
 
     steps: Annotated[tuple[AnyStep, ...], Field(min_length=2)] = Field(
