@@ -197,6 +197,15 @@ def test_a_bad_file_is_reported_at_its_place(tmp_path, capsys, kind, file, old, 
     assert "^" in out or "not closed before" in out, "the place is shown"
 
 
+@pytest.mark.parametrize("key", ["mass", "density"])
+def test_a_moving_body_of_an_mjcf_without_mass_is_refused_with_what_to_write(tmp_path, capsys, key):
+    """As the doors of cabinets whose masses a program sets after it has read the file."""
+    weightless = FILES["arm.xml"].replace('size="0.02 0.03 0.1"', f'size="0.02 0.03 0.1" {key}="0"')
+    assert main(["check", str(write(tmp_path, "arm.xml", weightless))]) == 2
+    out = " ".join(capsys.readouterr().out.replace("|", "").split())
+    assert "give its geoms a `mass` or a `density` above 0, or the body an `inertial`" in out
+
+
 @pytest.mark.parametrize(
     ("old", "new", "reported"),
     [

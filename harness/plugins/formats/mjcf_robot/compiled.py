@@ -15,6 +15,8 @@ from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.mjcf_robot.files import missing_meshes
 from harness.robot.packages import PackagePath
 
+WEIGHTLESS = "give its geoms a `mass` or a `density` above 0, or the body an `inertial`"
+
 
 def compile_mjcf(
     path: Path, roots: Sequence[XmlElement], packages: PackagePath, notes: list[str]
@@ -92,4 +94,5 @@ def _problem(message: str, root: XmlElement, path: Path) -> Problem:
     line = int(found[1]) if found else 0
     excerpt = source.line(line)
     column = len(excerpt) - len(excerpt.lstrip()) + 1 if line else 0
-    return Problem(str(path), line, column, f"MuJoCo: {text}", "", excerpt)
+    hint = WEIGHTLESS if "mjMINVAL" in text else ""
+    return Problem(str(path), line, column, f"MuJoCo: {text}", hint, excerpt)
