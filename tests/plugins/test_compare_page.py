@@ -177,6 +177,7 @@ def test_a_telephone_and_no_scripts_show_the_differences(browser, file):
         [opened] = re.findall(r"TCP is farthest apart at t=([\d.]+)", narrow.content())
         assert narrow.get_attribute("#track", "aria-valuenow") == f"{float(opened):.3f}"
         assert narrow.evaluate("document.documentElement.scrollWidth") <= 390
+        assert narrow.evaluate("document.querySelector('#details').offsetWidth") > 370
         plain = visit(file, scripts=False)
         assert "joint1: 1.2" in plain.text("#summary")
 
