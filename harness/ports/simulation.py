@@ -57,37 +57,6 @@ class ExpectedGrasp:
     is_free: bool
 
 
-class Faults(Protocol):
-    """What can be broken in the physics while a run continues.
-
-    Each call returns what stood before, so that a receipt can distinguish a fault from no change.
-    """
-
-    def set_friction(self, name: str, sliding: float) -> float:
-        """Change the sliding friction of an object's surface, its other frictions alike."""
-        ...
-
-    def weaken_gripper(self, share: float, joint: str = "") -> float:
-        """Leave the gripper with a joint a share of its effort, (0, 1]; by default the only one."""
-        ...
-
-    def stall_joint(self, joint: str) -> bool:
-        """Hold a joint where it is for the rest of the run, whatever its motor does."""
-        ...
-
-    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
-        """Push free objects at their centres of mass [N, world axes] for some time [s], at once."""
-        ...
-
-    def disturb_sensors(self, deviation: float, seed: int) -> float:
-        """Add white noise to the joint positions that the controllers measure [rad or m]."""
-        ...
-
-    def delay_commands(self, latency: float) -> float:
-        """Let set points reach the motors later [s]."""
-        ...
-
-
 class Simulator(Protocol):
     """The physics; time only moves inside these calls, and every sample of it is recorded.
 
@@ -103,11 +72,6 @@ class Simulator(Protocol):
     @property
     def sample_count(self) -> int:
         """Samples recorded so far."""
-        ...
-
-    @property
-    def faults(self) -> Faults:
-        """What can be broken."""
         ...
 
     def joint_positions(self) -> FloatArray:

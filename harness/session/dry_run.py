@@ -6,7 +6,7 @@ missing objects have the results of a run; contacts are assumed to happen as the
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -28,31 +28,8 @@ from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
 
-class DryFaults:
-    """The Faults port without physics: nothing breaks."""
-
-    def set_friction(self, name: str, sliding: float) -> float:
-        return sliding
-
-    def weaken_gripper(self, share: float, joint: str = "") -> float:
-        return share
-
-    def stall_joint(self, joint: str) -> bool:
-        return False
-
-    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None: ...
-
-    def disturb_sensors(self, deviation: float, seed: int) -> float:
-        return deviation
-
-    def delay_commands(self, latency: float) -> float:
-        return latency
-
-
 class DrySimulator:
     """The Simulator port without physics: commands take effect at once, and no time passes."""
-
-    faults = DryFaults()
 
     def __init__(self, program: Program, scene: PlanningScene) -> None:
         """Stand at the start state; what an arm holds in the planning scene moves with it."""

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from weakref import proxy
 
 import mujoco
 import numpy as np
@@ -18,7 +17,7 @@ from harness.ports.joint_control import JointController
 from harness.robot.description import RobotDescription
 from harness.robot.end_effector import Gripper
 from harness.simulation.adhesion import adhesion_of
-from harness.simulation.faults import MujocoFaults
+from harness.simulation.disturbance import Disturbance
 from harness.simulation.joint_drive import JointDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects, overlaps
@@ -78,7 +77,7 @@ class Motors:
         self._control = self._first_control()
         self._data.ctrl[:] = self._control
         self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
-        self.faults = MujocoFaults(self.physics, self._data, proxy(self))
+        self.disturbance = Disturbance(self.physics, self._data)
         self.adhesion = adhesion_of(self.physics, self._data)
         wrenches = WrenchSensors(description.wrench_sensors.values(), timestep, seed)
         self._recording = Recording(self.physics, self._data, wrenches, self.adhesion)
@@ -173,7 +172,7 @@ class Motors:
     def limit_grip(self, actuator: int, effort: float) -> None:
         """Limit a gripper's effort, in addition to the effort that carries its own weight."""
         self._grips[actuator] = effort
-        effort *= self.faults.grip_share.get(actuator, 1.0)
+        effort *= self.disturbance.grip_share.get(actuator, 1.0)
         largest = self.physics.servos.effort[actuator]
         weight = self._drive.weight(self.joint_positions())[actuator]
         limits = np.clip([weight - effort, weight + effort], -largest, largest)
@@ -244,10 +243,10 @@ class Motors:
                 return
             for begin in range(0, len(points) - 1, cycle):
                 part = points.part(begin, min(begin + cycle, len(points) - 1))
-                self._step(part, self._drive.inputs(part, self.faults.measured_noise(1)[-1]))
+                self._step(part, self._drive.inputs(part, self.disturbance.measured_noise(1)[-1]))
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:
-        arrived = self.faults.distorted(controls, self._drive.position_share)
+        arrived = self.disturbance.distorted(controls, self._drive.position_share)
         self._recording.advance(arrived, points.positions[1:], points.velocities[1:])
 
     def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
@@ -263,13 +262,6 @@ class Motors:
         if self._drive.cycle is not None:
             return np.zeros_like(points.positions)
         return self._drive.inputs(points)
-
-    def weaken_gripper(self, joint: str, share: float) -> float:
-        """Leave a gripper a share of its effort; returns the share before."""
-        actuator, shares = self.actuator_of(self.gripper(joint)), self.faults.grip_share
-        before, shares[actuator] = shares.get(actuator, 1.0), share
-        self.renew_grip_limit()
-        return before
 
     def gripper(self, joint: str) -> Gripper:
         """The gripper with a joint; by default the robot's first."""

@@ -68,7 +68,7 @@ class TrajectoryTracking(Motors):
     def _refuse_lag(self, first: int, commanded: FloatArray, columns: IntArray) -> None:
         tolerance = self.description.tracking.trajectory
         joints = self.physics.actuated[columns]
-        noise = self.faults.measured_noise(len(commanded))[:, columns]
+        noise = self.disturbance.measured_noise(len(commanded))[:, columns]
         errors = np.abs(self._recording.joint_positions(first)[:, joints] + noise - commanded)
         beyond = np.flatnonzero((errors > tolerance).any(axis=1))
         if len(beyond):
@@ -80,7 +80,7 @@ class TrajectoryTracking(Motors):
         joints = self.physics.actuated[columns]
         deadline = self.time + tracking.goal_time
         while True:
-            noise = self.faults.measured_noise(1)[-1, columns]
+            noise = self.disturbance.measured_noise(1)[-1, columns]
             errors = np.abs(self.joint_positions()[joints] + noise - goal)
             if (errors <= tracking.goal).all():
                 return

@@ -8,7 +8,7 @@ import pytest
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.ports.simulation import ExpectedGrasp
-from harness.session.dry_run import DryFaults, DrySimulator
+from harness.session.dry_run import DrySimulator
 
 GRIPPER = SimpleNamespace(
     joint="finger", open_position=0.03, closed_position=0.0, sides={"left": (), "right": ()}
@@ -103,15 +103,6 @@ def test_objects_stand_where_they_are_put():
     hand.remove_object("cup")
     with pytest.raises(KeyError):
         hand.object_pose("cup")
-
-
-def test_faults_without_physics_are_what_was_set_before():
-    faults = DryFaults()
-    assert faults.set_friction("box", 0.3) == 0.3
-    assert faults.weaken_gripper(0.5) == 0.5
-    assert faults.stall_joint("arm") is False
-    assert faults.disturb_sensors(0.1, 3) == 0.1
-    assert faults.delay_commands(0.2) == 0.2
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
+from harness.plugins.faults.injection import Injection
 from harness.plugins.studio.live_simulator import LiveSimulator
 from tests.simulation.physics_scenes import a_box, a_cylinder
 from tests.simulation.test_determinism import assert_equal_bits
@@ -93,7 +94,7 @@ def test_what_is_struck_by_a_falling_object_wakes(gripper_over_table):
 
 def test_what_is_pushed_wakes(gripper_over_table):
     simulator = simulator_of(gripper_over_table, a_stack())
-    simulator.faults.push({"cylinder": np.array([0.0, 2.0, 0.0])}, 0.2)
+    Injection(simulator).push({"cylinder": np.array([0.0, 2.0, 0.0])}, 0.2)
     assert simulator.object_pose("cylinder").translation[1] > 0.25
 
 
@@ -102,8 +103,8 @@ def test_what_stands_on_a_slope_slides_when_it_becomes_slippery(gripper_over_tab
     before = simulator.object_pose("box").translation.copy()
     simulator.hold(1.0)
     assert np.abs(simulator.object_pose("box").translation - before).max() < 1e-6
-    simulator.faults.set_friction("box", 0.05)
-    simulator.faults.set_friction("board", 0.05)
+    Injection(simulator).set_friction("box", 0.05)
+    Injection(simulator).set_friction("board", 0.05)
     simulator.hold(0.5)
     assert np.linalg.norm(simulator.object_pose("box").translation - before) > 0.1
 
@@ -131,7 +132,7 @@ def test_nothing_falls_asleep_in_the_air(gripper_over_table, gravity):
 def test_what_drifts_slowly_without_gravity_goes_on(gripper_over_table):
     objects = (a_box("box", (0.05, 0.05, 0.05), (0.6, 0, 0.5), mass=0.1),)
     simulator = LiveSimulator(gripper_over_table, objects, ("box",), gravity=(0, 0, 0))
-    simulator.faults.push({"box": np.array([1e-7, 0.0, 0.0])}, 0.1)  # 0.1 um/s
+    Injection(simulator).push({"box": np.array([1e-7, 0.0, 0.0])}, 0.1)  # 0.1 um/s
     before = simulator.object_pose("box").translation[0]
     simulator.hold(1.0)
     assert simulator.object_pose("box").translation[0] - before == pytest.approx(1e-7, rel=0.01)
@@ -140,7 +141,7 @@ def test_what_drifts_slowly_without_gravity_goes_on(gripper_over_table):
 def strike(simulator):
     """A motion of time that puts objects to sleep, wakes some of them and lets them rest again."""
     simulator.hold(0.35)
-    simulator.faults.push({"upper": np.array([0.3, 0.0, 0.0])}, 0.05)
+    Injection(simulator).push({"upper": np.array([0.3, 0.0, 0.0])}, 0.05)
     simulator.hold(0.6)
     return simulator.finish()
 

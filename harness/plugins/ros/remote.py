@@ -27,7 +27,7 @@ from harness.plugins.ros.remote_controllers import (
 )
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wrench_readings import WrenchReadings
-from harness.ports.simulation import ExpectedGrasp, Faults, GripperResult
+from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.signals import UNPUBLISHED, Signals
 from harness.reporting.result import CaseResult
 from harness.session.prepare import Prepared, prepare
@@ -190,11 +190,6 @@ class RemoteArm:
         if states.speed >= max_velocity:
             raise StepFailed("TIMED_OUT", f"the robot still moves after {timeout:g} s")
         return True
-
-    @property
-    def faults(self) -> Faults:
-        """Nothing can be broken in a real robot."""
-        raise StepFailed("ABORT", "faults are injected into simulated robots alone")
 
     start_gripper = _refuses("arm and gripper of a ROS 2 robot do not move in parallel here")
     add_object = _refuses("an object would have to appear in the real cell; add it `in: planning`")

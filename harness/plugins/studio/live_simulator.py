@@ -109,7 +109,7 @@ class LiveSimulator(MujocoSimulator):
             dict(self._grips),
             {joint: gripper.pending for joint, gripper in self._grippers.items()},
             deepcopy(self._drive.controller),
-            {name: deepcopy(getattr(self.faults, name)) for name in OF_FAULTS},
+            {name: deepcopy(getattr(self.disturbance, name)) for name in OF_FAULTS},
             deepcopy(self._objects.log),
             deepcopy(self._surfaces.log),
         )
@@ -124,7 +124,7 @@ class LiveSimulator(MujocoSimulator):
             gripper.pending = state.pending[joint]
         self._objects.log = deepcopy(dict(state.objects))
         for name, value in state.faults.items():
-            setattr(self.faults, name, deepcopy(value))
+            setattr(self.disturbance, name, deepcopy(value))
         self._surfaces.log = deepcopy(dict(state.surfaces))
         self._recording.rewind(state.samples)
 

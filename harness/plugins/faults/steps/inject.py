@@ -99,7 +99,11 @@ class Inject(Step):
 
     def execute(self, cell: Cell) -> None:
         """Begin the faults; their effect is read from the recording after the run."""
-        faults = cell.simulator.faults
+        from harness.plugins.faults.injection import Injection, MujocoSimulator
+
+        if not isinstance(cell.simulator, MujocoSimulator):
+            return  # a dry run, in which nothing breaks
+        faults = Injection(cell.simulator)
 
         def note(fault: FaultKind, target: str, before: object, after: object) -> None:
             begun = cell.notes.result.find(InjectedFaults) or InjectedFaults(())
