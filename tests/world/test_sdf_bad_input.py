@@ -117,6 +117,33 @@ def test_all_missing_models_and_meshes_are_reported_together(tmp_path):
     ]
 
 
+@pytest.mark.parametrize("name", ["a", "a/meshes/b.stl"])
+def test_a_model_in_models_next_to_worlds_is_named_with_its_folder(tmp_path, name):
+    (tmp_path / "models" / "a").mkdir(parents=True)
+    (tmp_path / "worlds").mkdir()
+    include = f"<include><uri>model://{name}</uri></include>"
+    problem = problem_of(tmp_path / "worlds", text_with("world", include))
+    assert problem.message == f"`model://{name}` is not found"
+    assert problem.hint.startswith(f"it is in {tmp_path / 'models'}; name its folder in `world:")
+
+
+@pytest.mark.parametrize("scheme", ["model", "package"])
+@pytest.mark.parametrize("folder", ["bucket", "else"])
+def test_a_model_that_is_the_world_names_its_own_files(tmp_path, folder, scheme):
+    """As a file of a folder of models does, whose other folders need not be readable."""
+    (tmp_path / folder).mkdir()
+    (tmp_path / "bucket.stl").write_text("above the folder of the file")
+    uri = f"<uri>{scheme}://bucket/{{}}</uri>"
+    shape = "<collision name='d'><geometry><mesh>{}</mesh></geometry></collision>"
+    own = text_with("link", shape.format(uri.format("part.obj")))
+    if folder == "bucket":
+        load(tmp_path / folder, own)
+    else:
+        assert problem_of(tmp_path / folder, own).message.endswith("part.obj` is not found")
+    outside = text_with("link", shape.format(uri.format("../bucket.stl")))
+    assert "bucket.stl`" in problem_of(tmp_path / folder, outside).message
+
+
 def test_models_that_include_each_other_are_reported_with_the_circle(tmp_path):
     (tmp_path / "loop").mkdir()
     loop = "<sdf version='1.9'><model name='a'>\n<include><uri>model://loop</uri></include></model></sdf>"

@@ -56,6 +56,7 @@ class ModelPath:
             ),
             data_folder("worlds") / "models",
         ]
+        self._nearby = world_folder.parent / "models"  # next to `worlds`, as most packages have it
         home = expanded(environment.get("HOME", "~"))
         self._cache = Path(environment.get(FUEL_CACHE) or home / ".gz" / "fuel")
         self._roots = [folder.resolve() for folder in (*self.folders, self._cache)]
@@ -77,7 +78,9 @@ class ModelPath:
         if not separator:
             candidates = [base_folder / uri, *(folder / uri for folder in self.folders)]
         elif scheme in ("model", "package"):
-            candidates = [folder / rest for folder in self.folders]
+            name, _, inside = rest.partition("/")
+            itself = [base_folder / inside] if base_folder.name == name else []
+            candidates = [*(folder / rest for folder in self.folders), *itself]
         elif scheme == "file":
             candidates = [base_folder / rest]
         elif scheme in ("http", "https"):
@@ -96,7 +99,9 @@ class ModelPath:
         if scheme in ("http", "https"):
             hint = "nothing is downloaded: get the model with `gz fuel download -u ADDRESS`"
             raise MissingFileError([element.problem(f"`{uri}` is not in Gazebo's cache", hint)])
-        raise MissingFileError([element.problem(f"`{uri}` is not found", HINT)])
+        nearby = self._nearby / rest.partition("/")[0]
+        hint = f"it is in {self._nearby}; {HINT}" if separator and nearby.is_dir() else HINT
+        raise MissingFileError([element.problem(f"`{uri}` is not found", hint)])
 
     def _cached(self, uri: str) -> list[Path]:
         """Candidates for a Fuel model: the newest version in Gazebo's cache, or the bundled one."""
