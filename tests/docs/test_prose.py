@@ -70,10 +70,11 @@ def advice(word):
 
 def dialect(name, text):
     """A message for each word of a text that has a plainer one; names are split into words."""
+    text = re.sub(r"(?<=[a-z])(?=[A-Z])|_+", " ", text)
+    if not WORD.search(text):
+        return
     for number, line in enumerate(text.splitlines(), 1):
-        plain = re.sub(r"(?<=[a-z])(?=[A-Z])|_+", " ", line)
-        plain = ALLOWED.sub("", plain)
-        for word in WORD.findall(plain):
+        for word in WORD.findall(ALLOWED.sub("", line)) if WORD.search(line) else ():
             yield f"{name}:{number}: '{word}': write {advice(word)}"
 
 
