@@ -8,6 +8,7 @@ import { turns } from "./verdict_table.js";
 const DASH = [5, 3]; // [pixels]
 const APART = { id: "apart", title: "apart at equal times", unit: "mm", limits: [], least: 1 };
 const REVEALING = ["height", "slip", "contact", "gripper", "tcp", "position", "turn", "tracking", "velocity", "effort", "displacement"];
+const PANELS = 4; // plots that are shown at once
 const INSTANTS = 100; // at which lines are compared
 const DIFFERS = 0.02; // of a plot's range: lines that are farther apart differ to the eye
 
@@ -17,14 +18,21 @@ export class TwoPlots extends Plots {
     const groups = [...new Map(payloads.toReversed().flatMap(({ run }) => run.groups.map((group) => [group.id, group]))).values()];
     if (apart.series().length) groups.unshift(APART);
     const judged = verdicts.filter(turns).flatMap(({ first, second }) => [second.plot, first.plot]).filter(Boolean);
-    const preferred = [APART.id, ...judged, ...REVEALING.filter((id) => linesThatDiffer(payloads, id).size)];
-    return new TwoPlots({ run: { groups }, payloads, alignment, apart }, clock, bands, preferred);
+    const preferred = [...new Set([APART.id, ...judged])];
+    const differing = new Map();
+    for (const id of REVEALING) {
+      if (preferred.length >= PANELS) break;
+      differing.set(id, linesThatDiffer(payloads, id));
+      if (differing.get(id).size && !preferred.includes(id)) preferred.push(id);
+    }
+    return new TwoPlots({ run: { groups }, payloads, alignment, apart, differing }, clock, bands, preferred);
   }
 
   series(group) {
-    const { payloads, alignment, apart } = this.payload;
+    const { payloads, alignment, apart, differing: known } = this.payload;
     if (group.id === APART.id) return apart.series();
-    const differing = linesThatDiffer(payloads, group.id);
+    if (!known.has(group.id)) known.set(group.id, linesThatDiffer(payloads, group.id));
+    const differing = known.get(group.id);
     return payloads.flatMap((payload, index) => {
       const own = payload.run.groups.find(({ id }) => id === group.id);
       if (!own) return [];
