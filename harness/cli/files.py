@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from harness.core.files import write_whole
 from harness.suite.discovery import UsageError, discover
 
 RUN = "run.json"
@@ -60,11 +61,11 @@ def refusing_unwritable() -> Iterator[None]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file, and the folder that it is in.
+    """Write a text file whole, and the folder that it is in.
 
     Raises:
         UsageError: It cannot be written.
     """
     with refusing_unwritable():
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8", newline="")
+        write_whole(path, text)

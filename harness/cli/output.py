@@ -182,7 +182,8 @@ def indented(message: str) -> str:
     return message.replace("\n", "\n    ")
 
 
-OF_A_PATH = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EROFS, errno.ENOSPC, errno.EDQUOT)
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+OF_A_PATH = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EROFS, *FULL)
 """What is wrong with a path that a user gave, or with its disk, and never with the program."""
 
 

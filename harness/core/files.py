@@ -7,6 +7,7 @@ import os
 import stat
 from collections.abc import Generator
 from contextlib import contextmanager
+from io import BufferedReader
 from pathlib import Path
 from typing import IO
 
@@ -15,19 +16,8 @@ from harness.core.errors import HarnessError
 BUFFER = 2**20  # bytes of a file that are written at once
 
 
-def is_file(path: Path) -> bool:
-    """Whether a file is there; not where the path cannot be one, as its name is too long."""
-    return os.path.isfile(path)  # noqa: PTH113 - `Path.is_file` raises OSError for such a name
-
-
-def is_dir(path: Path) -> bool:
-    """Whether a folder is there; not where the path cannot be one, as its name is too long."""
-    return os.path.isdir(path)  # noqa: PTH112 - as above
-
-
-def path_exists(path: Path) -> bool:
-    """Whether a file or folder is there; not where the path cannot be one."""
-    return os.path.exists(path)  # noqa: PTH110 - as above
+is_file, is_dir, path_exists = os.path.isfile, os.path.isdir, os.path.exists
+"""What is there; nothing where a name is too long, for which `Path.is_file` raises OSError."""
 
 
 def home_folder() -> Path | None:
@@ -55,13 +45,21 @@ def read_at_most(path: Path, most: int) -> bytes:
     Raises:
         OSError: It cannot be read, is no regular file, or is larger.
     """
-    status = path.stat()
-    if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
+    with open_regular(path) as stream:
+        size = os.fstat(stream.fileno()).st_size
+        if size > most:
+            reason = f"{size / 1e6:.0f} MB; at most {most / 1e6:.0f} MB are read"
+            raise OSError(errno.EFBIG, reason, str(path))
+        return stream.read()
+
+
+def open_regular(path: Path) -> BufferedReader:
+    """Open a file for reading; an OSError for a pipe, whose writer would be waited for."""
+    stream = open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK))  # noqa: SIM115
+    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+        stream.close()
         raise OSError(errno.EINVAL, "not a regular file", str(path))
-    if status.st_size > most:
-        reason = f"{status.st_size / 1e6:.0f} MB; at most {most / 1e6:.0f} MB are read"
-        raise OSError(errno.EFBIG, reason, str(path))
-    return path.read_bytes()
+    return stream
 
 
 def part_of(file: Path) -> Path:
@@ -86,8 +84,18 @@ def replaced(file: Path) -> Generator[IO[bytes]]:
         with part.open("wb", buffering=BUFFER) as stream:
             yield stream
         part.replace(file)
+    except OSError as error:
+        if error.filename in (None, str(part)):  # a full disk names none
+            error.filename = str(file)
+        raise
     finally:
         part.unlink(missing_ok=True)
+
+
+def write_whole(file: Path, content: bytes | str) -> None:
+    """Write a file, a text as UTF-8, or leave it as it was."""
+    with replaced(file) as stream:
+        stream.write(content.encode() if isinstance(content, str) else content)
 
 
 @contextmanager

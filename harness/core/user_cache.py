@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from harness.core.files import home_folder
+from harness.core.files import home_folder, write_whole
 
 LARGEST = 1_000_000_000  # [bytes], of the folder: files that were not read for longest go
 
@@ -36,22 +35,15 @@ def cached(name: str) -> bytes | None:
 
 
 def store(name: str, content: bytes) -> None:
-    """Store under a temporary name, then rename: a reader never sees half a file.
+    """Store a file whole, with a checksum at its beginning.
 
-    The file begins with a checksum. A full or read-only disk is no error: the content is computed
-    again next time.
+    A full or read-only disk is no error: the content is computed again next time.
     """
-    path, temporary = cache_folder() / name, ""
-    try:
+    path = cache_folder() / name
+    with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(hashlib.sha256(content).digest() + content)
-        Path(temporary).replace(path)
+        write_whole(path, hashlib.sha256(content).digest() + content)
         _remove_oldest()
-    except OSError:
-        if temporary:
-            Path(temporary).unlink(missing_ok=True)
 
 
 def _remove_oldest() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from harness.core.errors import Problem, SpecError
-from harness.core.files import read_at_most
+from harness.core.files import read_at_most, write_whole
 from harness.core.limits import PICTURE_FILE, PICTURE_PIXELS
 from harness.recording.picture_size import pixels_of
 
@@ -24,10 +24,10 @@ class FolderFiles(Mapping[str, bytes]):
     def __getitem__(self, name: str) -> bytes:
         if name not in self._names:
             raise KeyError(name)
-        path = (self._folder / checked(name)).resolve()
-        if not path.is_relative_to(self._folder.resolve()):
-            raise _damaged(self._folder / name, "this file leads out of the run's folder")
+        path = self._folder / name
         try:
+            if not (self._folder / checked(name)).resolve().is_relative_to(self._folder.resolve()):
+                raise _damaged(path, "this file leads out of the run's folder")
             content = read_at_most(path, PICTURE_FILE)
             if path.suffix in OTHERS or pixels_of(content) <= PICTURE_PIXELS:
                 return content
@@ -52,10 +52,17 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
         path.write_bytes(files[name])
 
 
+def write_file(path: Path, content: bytes | str) -> None:
+    """Write a file of a saved run whole, in place of a link, which may lead anywhere, or a pipe."""
+    if path.is_symlink() or path.is_fifo():
+        path.unlink()
+    write_whole(path, content)
+
+
 def disk_advice(error: OSError) -> str:
     """The beginning of the advice on a file that cannot be written."""
-    is_full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-    return "free some space there, or " if is_full else ""
+    full = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+    return "free some space there, or " if error.errno in full else ""
 
 
 def checked(name: str) -> str:

@@ -12,6 +12,7 @@ from typing import IO, Any, BinaryIO
 
 import numpy as np
 
+from harness.core.files import open_regular
 from harness.core.limits import RUN_ARRAYS
 
 Array = np.ndarray[Any, Any]
@@ -55,7 +56,7 @@ class NpzFile:
     """
 
     def __init__(self, file: Path | BinaryIO, most: int = RUN_ARRAYS) -> None:
-        stream = file.open("rb") if isinstance(file, Path) else file
+        stream = open_regular(file) if isinstance(file, Path) else file
         try:
             with _located(""):
                 self._archive = zipfile.ZipFile(stream)
@@ -107,11 +108,10 @@ class NpzFile:
 
 
 def _header(member: IO[bytes]) -> ArrayHeader:
-    version = np.lib.format.read_magic(member)
-    if version == (1, 0):
-        shape, _, dtype = np.lib.format.read_array_header_1_0(member)
-    else:
-        shape, _, dtype = np.lib.format.read_array_header_2_0(member)
+    is_first = np.lib.format.read_magic(member) == (1, 0)
+    form = np.lib.format
+    read = form.read_array_header_1_0 if is_first else form.read_array_header_2_0
+    shape, _, dtype = read(member)
     return ArrayHeader(shape, dtype)
 
 

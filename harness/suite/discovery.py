@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from harness.core.errors import HarnessError
-from harness.core.files import is_dir, is_file
+from harness.core.files import is_dir, is_file, path_exists
 from harness.core.resources import data_folder
 
 SUFFIX = ".scenario.yaml"
@@ -71,6 +71,8 @@ def _files(path: Path) -> list[Path]:
     below = [file for each, file in bundled.items() if each.startswith(f"{name}/")]
     if below and not path.is_absolute():
         return below
+    if path_exists(path):
+        raise UsageError(f"'{path}' is neither a file nor a folder")
     raise UsageError(f"no such file or folder: '{path}'{_hint(path, bundled)}")
 
 

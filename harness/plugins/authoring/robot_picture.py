@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.cameras.camera_recorder import Overview, camera_recorder
 from harness.cameras.meshes import undrawn
+from harness.core.files import write_whole
 from harness.core.geometry import bounding_radius
 from harness.core.picture_files import jpeg, png
 from harness.core.types import FloatArray
@@ -40,7 +41,7 @@ def save_robot_picture(
     radii = np.array([_radius(link) for link in links])
     picture = Overview(poses, centres, radii, (SIZE, SIZE))
     image = camera_recorder(description, ()).overview(picture)
-    file.write_bytes(png(image) if file.suffix.lower() == ".png" else jpeg(image))
+    write_whole(file, png(image) if file.suffix.lower() == ".png" else jpeg(image))
     missing = undrawn(description, ())
     return f"not in the picture: {', '.join(missing)}" if missing else ""
 

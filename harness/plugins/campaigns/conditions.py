@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
-from harness.core.files import is_dir, path_exists, replaced, writing
+from harness.core.files import is_dir, open_regular, path_exists, replaced, writing
 from harness.core.limits import RESULTS_LINE
 from harness.core.untrusted_json import parse_json
 from harness.reporting.json_text import compact_json
@@ -116,7 +116,7 @@ class Conditions:
         self.path = path
         self._by_file: dict[str, FileConditions] = {}
         hasher = hashlib.sha256()
-        self._file = path.open("rb")
+        self._file = open_regular(path)
         weakref.finalize(self, self._file.close)
         first = parse_json(self._file.readline(RESULTS_LINE))
         if not isinstance(first, dict) or first.get("format") != FORMAT:

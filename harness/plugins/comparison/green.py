@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from harness.core.files import path_exists
+from harness.core.files import path_exists, write_whole
 from harness.plugins.comparison.compare import compare
 from harness.plugins.comparison.html import comparison_page
 from harness.recording.read_run import read_run
@@ -37,4 +37,4 @@ def against_green(green: Path, folder: Path, failed: StoredRun) -> None:
     passed = read_run(green)
     names = "last green run", "this run"
     page = comparison_page(passed, failed, compare(passed, failed), names)
-    (folder / PAGE).write_text(page, encoding="utf-8", newline="")
+    write_whole(folder / PAGE, page)

@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.cameras.camera_recorder import Overview, camera_recorder
 from harness.cameras.marks import frame_mark, line_mark, mark
+from harness.core.files import write_whole
 from harness.core.picture_files import jpeg
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -58,7 +59,7 @@ def draw_ik_comparison(
     radii = np.array(list(sizes.values()))
     tints = {ghost.name: BLUE_GHOST for ghost in ghosts}
     picture = Overview(shown, points, radii, tints=tints, caption=caption)
-    file.write_bytes(jpeg(camera_recorder(description, bodies).overview(picture)))
+    write_whole(file, jpeg(camera_recorder(description, bodies).overview(picture)))
 
 
 def _ghosts(description: RobotDescription, state: FloatArray) -> list[WorldObject]:

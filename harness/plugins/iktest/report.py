@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.files import write_whole
 from harness.core.types import FloatArray
 from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.poses import Target
@@ -164,7 +165,7 @@ def write_ik_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
         raise UsageError(f"cannot write '{error.filename}': {error.strerror}") from error
     findings = tuple(_with_picture(finding, chain, folder) for finding in report.findings)
     report = replace(report, findings=findings)
-    (folder / FILE).write_text(json_text(report.facts()), encoding="utf-8")
+    write_whole(folder / FILE, json_text(report.facts()))
     return report
 
 

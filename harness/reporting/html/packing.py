@@ -54,8 +54,7 @@ class Packer:
 
 def differences(columns: Array) -> Array:
     """16-bit numbers as differences down each column, modulo 65536, shape (columns, rows)."""
-    wide = columns.astype(np.int64)
-    return (np.diff(wide, axis=1, prepend=0) & 0xFFFF).astype(np.uint16)
+    return (np.diff(columns.astype(np.int64), axis=1, prepend=0) & 0xFFFF).astype(np.uint16)
 
 
 def zigzag(values: Array) -> Array:

@@ -39,8 +39,7 @@ def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
     rate = min(FASTEST_RATE, max(SLOWEST_RATE, MOST_FRAMES / max(duration, 1e-9)))
     count = max(2, int(np.ceil(duration * rate)) + 1)
     step = max(duration / (count - 1), 1e-6)
-    samples = np.searchsorted(times, np.arange(count) * step - 1e-9)
-    return step, np.minimum(samples, len(times) - 1)
+    return step, np.searchsorted(times, np.arange(count) * step - 1e-9).clip(max=len(times) - 1)
 
 
 def pack_scene(

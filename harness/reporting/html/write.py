@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.recording.explanation import recorded_explanation
+from harness.recording.files import write_file
 from harness.recording.read_run import read_run
 from harness.recording.run import Run
 from harness.recording.stored_run import PAGE, StoredRun, blames_changes
@@ -134,7 +135,7 @@ def write_page(folder: Path, stored: StoredRun | None = None, begun: Page | None
     page = folder / PAGE
     with blames_changes(folder, stored):
         text = (begun or Page(stored.run, stored.verdicts)).html(stored, _pictures(folder, stored))
-    page.write_text(text, encoding="utf-8", newline="")
+    write_file(page, text)
     return page
 
 
@@ -142,7 +143,7 @@ def _pictures(folder: Path, stored: StoredRun) -> list[SummaryPicture]:
     """A few of the stills that the folder has: failures, the end, and between them."""
     executed = [step for step in stored.run.steps if step.status != "not reached"]
     stills = {
-        int(file.name.partition("-")[0]) - 1: file
+        int(file.name.partition("-")[0]) - 1: f"images/{file.name}"
         for file in (folder / "images").glob("[0-9]*-*.jpg")
         if not file.stem.endswith(WHY)
     }
@@ -159,20 +160,19 @@ def _pictures(folder: Path, stored: StoredRun) -> list[SummaryPicture]:
         (stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen
     ]
     captioned += [
-        (folder / picture, f"why: {step.summary}")
+        (picture, f"why: {step.summary}")
         for step in executed
         if step.status == "failed"
         and (picture := recorded_explanation(step.explanation).picture) is not None
     ]
     return [
         SummaryPicture(caption, small)
-        for file, caption in captioned
-        if (small := small_still(file, WIDTH)) is not None
+        for name, caption in captioned
+        if (small := small_still(folder, name, WIDTH)) is not None
     ]
 
 
 def _spread(numbers: Sequence[int], count: int) -> list[int]:
     if count <= 0 or not numbers:
         return []
-    last = len(numbers) - 1
-    return [numbers[round(last * (i + 1) / count)] for i in range(count)]
+    return [numbers[round((len(numbers) - 1) * (i + 1) / count)] for i in range(count)]

@@ -26,8 +26,7 @@ def deciding_still(result: CaseResult) -> Path | None:
         return None
     number = _deciding_step(result)
     files = sorted(Path(result.report_dir, "images").glob(f"{number:02d}-*.jpg"))
-    why = [file for file in files if file.stem.endswith("-why")]
-    return next(iter([*why, *files]), None)
+    return min(files, key=lambda file: not file.stem.endswith("-why"), default=None)
 
 
 def deciding_picture(result: CaseResult, width: int) -> bytes | None:
@@ -37,7 +36,7 @@ def deciding_picture(result: CaseResult, width: int) -> bytes | None:
         return None
     from harness.reporting.html.still import small_still  # loads Pillow
 
-    return small_still(still, width)
+    return small_still(still.parents[1], f"{still.parent.name}/{still.name}", width)
 
 
 def _deciding_step(result: CaseResult) -> int:

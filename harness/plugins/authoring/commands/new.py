@@ -11,6 +11,7 @@ from harness.cli.arguments import output_path
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
+from harness.core.files import write_whole
 from harness.core.registry import registry
 from harness.core.resources import data_folder
 from harness.plugins.authoring.new_project import SCENARIO, SCHEMA, files_outside, write_project
@@ -96,8 +97,7 @@ def _write(arguments: argparse.Namespace, file: Path) -> list[str]:
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         text, lines = _content(arguments, file)
-        with file.open("x", encoding="utf-8") as new:
-            new.write(f"# yaml-language-server: $schema={_schema(file)}\n{text}")
+        write_whole(file, f"# yaml-language-server: $schema={_schema(file)}\n{text}")
     except OSError as error:
         raise UsageError(f"cannot write '{file}': {error.strerror}") from error
     finally:

@@ -11,6 +11,7 @@ from harness.cli.command import SETUP, Command
 from harness.cli.files import refusing_unwritable
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
+from harness.core.files import write_whole
 
 
 class SchemaCommand(Command):
@@ -32,7 +33,7 @@ class SchemaCommand(Command):
             output().document(self.text())
             return 0
         with refusing_unwritable():
-            Path(file).write_text(self.text(), encoding="utf-8")
+            write_whole(Path(file), self.text())
         say(f"wrote {file}; the first line of a scenario can name it:")
         say(f"# yaml-language-server: $schema={file}")
         return 0

@@ -29,6 +29,7 @@ class FilmCommand(Command):
         """Draw both files."""
         folder = run_folder(arguments.run)
         from harness.plugins.cameras.film import draw_film, draw_moment
+        from harness.recording.files import write_file
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import blames_changes
         from harness.suite.folders import refuse_unwritable
@@ -43,6 +44,6 @@ class FilmCommand(Command):
         with refusing_unwritable():
             target.mkdir(parents=True, exist_ok=True)
             for name, content in files.items():
-                (target / name).write_bytes(content)
+                write_file(target / name, content)
                 say(str(target / name))
         return 0

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from harness.core.files import replaced, writing
+from harness.core.files import replaced, write_whole, writing
 from harness.core.printable import counted, printable
 from harness.language.reading.load import load_scenario
 from harness.language.reading.resolve import resolved_text
@@ -83,7 +83,7 @@ def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> Wri
         for stale in folder.glob(f"failure*{SUFFIX}"):
             stale.unlink()
         for file, failure in zip(files, failures, strict=True):
-            file.write_text(scenario_text(found, failure, folder), encoding="utf-8")
+            write_whole(file, scenario_text(found, failure, folder))
     if not failures:
         return Written((), found.nominal.result)
     jobs = [RunRequest(file, report_dir=folder / file.name.removesuffix(SUFFIX)) for file in files]

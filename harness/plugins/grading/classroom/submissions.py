@@ -15,6 +15,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from harness.core.errors import HarnessError
+from harness.core.files import open_regular
 from harness.core.limits import SUBMISSION_FILES
 from harness.plugins.grading.assignment import Assignment
 from harness.suite.discovery import UsageError
@@ -141,7 +142,7 @@ def _entries(source: Path, stack: ExitStack) -> Iterator[Entry]:
                     with path.open("rb") as content:
                         yield inside, content
     elif not _is_archive(source):
-        yield source.name, stack.enter_context(source.open("rb"))
+        yield source.name, stack.enter_context(open_regular(source))
     elif zipfile.is_zipfile(source):
         yield from _of_zip(stack.enter_context(zipfile.ZipFile(source)))
     else:

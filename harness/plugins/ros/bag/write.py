@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+import sqlite3
 from collections.abc import Iterator
 from dataclasses import dataclass
 from operator import attrgetter
@@ -84,10 +85,11 @@ def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None
         _text(folder / ROBOT, urdf_of(run, options.meshes))
         _text(folder / LAYOUT, foxglove_layout(stored))
         _text(folder / RVIZ, rviz_configuration(stored))
-    except OSError as error:
+    except (OSError, sqlite3.OperationalError) as error:  # the storage says that a disk is full
+        advice = disk_advice(error) if isinstance(error, OSError) else "free some space there, or "
         raise HarnessError(
-            f"the bag cannot be written to {folder}: {error.strerror or error};"
-            f" {disk_advice(error)}choose another place"
+            f"the bag cannot be written to {folder}: {getattr(error, 'strerror', None) or error};"
+            f" {advice}choose another place"
         ) from error
 
 
