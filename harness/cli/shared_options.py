@@ -111,7 +111,8 @@ def add_report_dir(
 
 def add_hard_cap(command: argparse.ArgumentParser, run: str) -> None:
     """`--hard-cap SECONDS`, for commands whose runs have processes of their own."""
-    text = f"end a {run} as an error after this wall time (default: 600)"
+    text = f"end a {run} as an error after this wall time, waits for a processor left out"
+    text += " (default: 600)"
     command.add_argument("--hard-cap", metavar="SECONDS", type=seconds, default=None, help=text)
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 import re
 import signal
-import time
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -36,7 +35,7 @@ from harness.suite.warm import REPORT_MODULES, Ended, Heard, WarmServer
 HARD_CAP_SECONDS = 600.0  # wall time of a case, whatever it does; HARNESS_HARD_CAP sets it
 
 
-LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again
+SHORT, LONGEST_WAIT = 0.01, 60.0  # [s], then the time of cases is looked at again
 MOST_READ = 1000  # cases in which names of steps and robots are looked for, approximately
 
 _WORD = re.compile(r"\w+")
@@ -140,7 +139,7 @@ def run_isolated(
     """Run every case in its own forked process, `workers` side by side.
 
     Args:
-        hard_cap: Wall seconds a case may take before it is ended as an error.
+        hard_cap: Wall seconds a case may take, waits for a processor left out; then it is ended.
         watch: Hears (index, event) of running cases.
         function: What a child calls; importable there by its name.
         is_needless: Called with each index before its case begins; a needless case is skipped.
@@ -164,10 +163,11 @@ def run_isolated(
                 job = jobs[index]
                 _clean(job)
                 number = server.start(function, job)
-                running[number] = _Running(index, job, time.monotonic() + cap)
+                running[number] = _Running(index, job)
             if not running:
                 break
-            for event in server.wait(_patience(running)):
+            left = [cap - server.time_of(each) for each in running if not running[each].is_over_cap]
+            for event in server.wait(min([max(SHORT, each) for each in left] + [LONGEST_WAIT])):
                 case = running[event.job]
                 match event:
                     case Heard(message=message):
@@ -178,8 +178,8 @@ def run_isolated(
                         _clean(case.job)
                         yield case.index, _result(case, event, cap)
             for number, case in running.items():
-                if time.monotonic() >= case.deadline and not case.is_over_cap:
-                    case.is_over_cap, case.deadline = True, float("inf")
+                if not case.is_over_cap and server.time_of(number) >= cap:
+                    case.is_over_cap = True
                     server.kill(number)
     except BaseException:  # Ctrl-C above all, perhaps in the middle of a message
         server.close()
@@ -208,11 +208,6 @@ def _words(jobs: Sequence[RunRequest]) -> frozenset[str]:
     return frozenset(word for text in texts for word in _WORD.findall(text))
 
 
-def _patience(running: Mapping[int, _Running]) -> float:
-    nearest = min(case.deadline for case in running.values())
-    return min(max(0.0, nearest - time.monotonic()), LONGEST_WAIT)
-
-
 def _clean(job: RunRequest) -> None:
     if job.report_dir is not None:
         clean_leftovers(job.report_dir)
@@ -227,7 +222,6 @@ def hard_cap_seconds() -> float:
 class _Running:
     index: int
     job: RunRequest
-    deadline: float
     is_over_cap: bool = False
     last: ProgressEvent | None = None
 

@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
@@ -83,6 +84,7 @@ class _Running:
     pipe: Connection
     log: IO[bytes]
     pid: int = 0
+    begin: float = 0.0
     code: int | None = None
     has_ended: bool = False
     result: Any = None
@@ -172,6 +174,18 @@ class WarmServer:
             with contextlib.suppress(OSError):
                 send(self._control, ("kill", job))
 
+    def time_of(self, job: int) -> float:
+        """Wall time since a job began, without waits for a processor where Linux has them [s]."""
+        running = self._jobs.get(job)
+        if running is None or not running.pid:
+            return 0.0
+        passed = time.monotonic() - running.begin
+        try:
+            stated = Path(f"/proc/{running.pid}/schedstat").read_text(encoding="ascii")
+        except OSError:
+            return passed
+        return passed - int(stated.split()[1]) / 1e9
+
     def wait(self, timeout: float | None) -> Iterator[Heard | Ended]:
         """Yield what happened, or nothing when `timeout` seconds passed first.
 
@@ -222,7 +236,7 @@ class WarmServer:
                 self.close()
                 raise ServerStartError(f"the modules of a run cannot be imported\n{why}")
             case ("started", job, pid):
-                self._jobs[job].pid = pid
+                self._jobs[job].pid, self._jobs[job].begin = pid, time.monotonic()
             case ("ended", job, code):
                 self._jobs[job].code, self._jobs[job].has_ended = code, True
             case _:

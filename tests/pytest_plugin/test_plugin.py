@@ -253,7 +253,7 @@ def test_a_row_of_pytest_html_has_the_margin_the_picture_and_the_page(pytester, 
 @pytest.mark.nightly
 def test_other_plugins_work_next_to_it(pytester, write):
     write(holds=HOLDS, again=HOLDS.replace("0.1 s", "0.15 s"))
-    words = ["-n", "2", "--randomly-seed=7", "--timeout=120", "--html=report.html",
+    words = ["-n", "2", "--randomly-seed=7", "--timeout=600", "--html=report.html",
              "--self-contained-html", "--cov=harness.suite", "--cov-report=json"]  # fmt: skip
     done = pytester.runpytest_subprocess("-p", "no:cacheprovider", *words)
     done.assert_outcomes(passed=2)

@@ -51,6 +51,19 @@ def never_returns_from_native_code(job, notify):
     ctypes.PyDLL(None).sleep(6000)  # unlike a function of CDLL, it lets no other thread run
 
 
+def computes_on_a_busy_processor(job, _notify):
+    """Half a second of processor time, next to other programs on the same processor."""
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    while time.process_time() < 0.5:
+        pass
+    return CaseResult(str(job.file), "", "t", "passed")
+
+
+def computes_without_end(_job, _notify):
+    while True:
+        pass
+
+
 def leaves_a_process_running(job, _notify):
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     Path(job.file).write_text(str(child.pid))

@@ -126,6 +126,23 @@ def test_an_endless_native_call_ends_as_an_error_at_the_hard_cap(server):
     )
 
 
+def test_the_hard_cap_does_not_count_waits_for_a_processor(server):
+    code = "import os\nos.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\nwhile True: pass"
+    others = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(4)]
+    try:
+        result = outcome(server, jobs.computes_on_a_busy_processor, hard_cap=1.0)
+    finally:
+        for each in others:
+            each.kill()
+            each.wait()
+    assert result.outcome == "passed"
+
+
+def test_an_endless_computation_ends_at_the_hard_cap(server):
+    result = outcome(server, jobs.computes_without_end, hard_cap=0.5)
+    assert result.message.startswith("no end after 0.5 s of wall time")
+
+
 def test_the_hard_cap_can_come_from_the_environment(server, monkeypatch):
     monkeypatch.setenv("HARNESS_HARD_CAP", "0.25")
     assert "after 0.25 s" in outcome(server, jobs.never_returns_from_native_code).message

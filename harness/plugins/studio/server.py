@@ -8,6 +8,7 @@ import logging
 import socket
 import threading
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
@@ -100,7 +101,8 @@ class StudioServer:
             self._server.close()
             await self._server.wait_closed()
 
-        asyncio.run_coroutine_threadsafe(end(), self._loop).result(timeout=10.0)
+        with suppress(TimeoutError):  # a page that does not leave ends with the process
+            asyncio.run_coroutine_threadsafe(end(), self._loop).result(timeout=10.0)
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join(timeout=5.0)
         if not self._thread.is_alive():

@@ -14,9 +14,8 @@ from pathlib import Path
 import pytest
 
 from tests.suite.ball import RATE, ball
-from tests.waiting import wait_for
+from tests.waiting import HANG, wait_for
 
-HANG = 3600  # wall time [s]; 200 cases took more than 600 s with 18 other programs on two cores
 pytestmark = [pytest.mark.needs_cluster, pytest.mark.timeout(HANG)]
 
 ENVIRONMENT = {**os.environ, "RAY_AUTH_MODE": "disabled", "RAY_USAGE_STATS_ENABLED": "0"}

@@ -134,7 +134,7 @@ with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             out.sendto(b"RTPS\2\3" + os.urandom(size), ("127.0.0.1", port))
             out.sendto(os.urandom(size), ("127.0.0.1", port))
 
-died = subprocess.run([sys.executable, __file__, "dying"], check=False, timeout=60)
+died = subprocess.run([sys.executable, __file__, "dying"], check=False)
 said["died"] = died.returncode
 second = Client("second")
 mine = first.send(follow(point(5.0)))
