@@ -30,7 +30,16 @@ PROMISES = (
     ),
     (
         "A full disk leaves the older file whole, and no half of the new one",
-        ("tests/recording/test_run_folder.py", "tests/plugins/studio/test_guard.py"),
+        (
+            "tests/cli/test_full_disk.py",
+            "tests/recording/test_run_folder.py",
+            "tests/plugins/studio/test_guard.py",
+        ),
+    ),
+    (
+        "A pipe, a device or a loop of links in place of a file is refused and never waited for; a"
+        " link in a saved run leads nowhere",
+        ("tests/cli/test_pipes_and_links.py", "tests/suite/test_odd_environments.py"),
     ),
     (
         "A folder that cannot be read or written is named",
@@ -96,7 +105,7 @@ PROMISES = (
     ),
     (
         "A suite of 10,000 cases, 500 objects, an hour of recording and 100 shards need no more"
-        " than their size",
+        " than their size (small ones before each change; [full sizes](#long-and-large))",
         ("tests/system/test_long_and_large.py", "tests/reporting/test_suite_page.py"),
     ),
 )
@@ -110,15 +119,18 @@ of each promise. The [threat model](../../SECURITY.md) says what is trusted;
 
 ## Promises
 
-The tests run before each change; exhaustive ones each night (`.ci/nightly`). The counts are of a
-run before a change, or, where the last column says so, of one with the exhaustive tests, by
-`python -m tests.campaigns --minutes 0 --scenarios 0 PATH ...`."""
+The tests run before each change; exhaustive ones each night (`.ci/nightly`). The counts are of
+`python -m tests.campaigns --minutes 0 --scenarios 0 --default PATH ...`, or, where the last column
+names exhaustive tests, of the same without `--default`. The day is the oldest of the tests in the
+row."""
 
 BUSY = """## On a busy machine
 
 Tests are written so that no verdict depends on wall time: a wait ends by its event, or by a cap
-that only a hang is to reach (600 s; an hour on a Ray cluster). Eighteen programs next to the
-default tests show whether that is so:
+that only a hang is to reach. The cap of campaigns is 120 s of processor time, that of tests an hour
+of wall time, since what they wait for are browsers and trees of processes; a machine that gives a
+test less than a hundredth of a processor can still reach it. Eighteen programs next to the default
+tests show whether they pass:
 
 ```sh
 for each in $(seq 18); do while :; do :; done & done
@@ -254,6 +266,8 @@ def _promise(promise: str, tests: tuple[str, ...], last: dict[str, dict[str, Any
     day = f" on {min(each['date'] for each in known)}" if known else ""
     names = [each.rpartition("/")[2] for each in tests if last.get(each, {}).get("exhaustive")]
     whole = f"; exhaustive ones of {', '.join(names)}" if names else ""
+    unrun = [each for each in tests if not any(last.get(each, {}).get(end) for end in ENDS)]
+    whole += "".join(f"; none of {each.rpartition('/')[2]}, which runs at night" for each in unrun)
     return f"| {promise} | {places} | {said}{day}{whole} |"
 
 

@@ -24,7 +24,10 @@ def selects(expression: str, file: Path, header: ScenarioHeader, case: str = "")
     """
     text = "\n".join([file.as_posix(), header.title, *header.tags, case]).lower()
     parser = _Parser(expression)
-    value = parser.any_of(text)
+    try:
+        value = parser.any_of(text)
+    except RecursionError:
+        raise UsageError("-k: its brackets and `not` are nested too deeply") from None
     if parser.tokens:
         raise UsageError(f"-k '{expression}': cannot read it from '{parser.tokens[0]}' on")
     return value

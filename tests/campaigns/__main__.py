@@ -1,8 +1,9 @@
 """All campaigns: every reader, drawn scenarios, and the tests of the promises, long ones included.
 
-python -m tests.campaigns [PATH ...] [--minutes N] [--scenarios N] [--seed S]
+python -m tests.campaigns [PATH ...] [--minutes N] [--scenarios N] [--seed S] [--default]
 
-With `--minutes 0 --scenarios 0` only the promises are tested, or those of them at the paths.
+With `--minutes 0 --scenarios 0` only the promises are tested, or those of them at the paths; with
+`--default` by the tests that run before each change alone.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=1.0, help="time for each reader")
     parser.add_argument("--scenarios", type=int, default=200, help="number of drawn scenarios")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--default", action="store_true", help="leave out exhaustive tests")
     arguments = parser.parse_args()
     found = 0
     if arguments.minutes:
@@ -36,24 +38,24 @@ def main() -> int:
     known = dict.fromkeys(path for _, paths in PROMISES for path in paths)
     if unknown := [path for path in arguments.paths if path not in known]:
         parser.error(f"{unknown[0]} holds no promise; there are {', '.join(known)}")
-    return int(bool(found + keep_promises(arguments.paths or list(known))))
+    paths = arguments.paths or list(known)
+    return int(bool(found + keep_promises(paths, is_exhaustive=not arguments.default)))
 
 
-def keep_promises(paths: Sequence[str]) -> int:
+def keep_promises(paths: Sequence[str], *, is_exhaustive: bool) -> int:
     """Test promises, record how each test ended, and return the exit code of pytest."""
-    both = "nightly or not nightly"
+    marked = "nightly or not nightly" if is_exhaustive else "not nightly and not benchmark"
     with TemporaryDirectory() as folder:
         report = Path(folder, "tests.xml")
         done = subprocess.run(
-            [sys.executable, "-m", "pytest", "-q", "-m", both, f"--junitxml={report}", *paths],
+            [sys.executable, "-m", "pytest", "-q", "-m", marked, f"--junitxml={report}", *paths],
             check=False,
         )
         ends = [*_ends(report)] if report.exists() else []
     if done.returncode in (0, 1):  # it was not interrupted
         for path in paths:
-            count_tests(
-                path, Counter(end for file, end in ends if f"{file}/".startswith(f"{path}/"))
-            )
+            own = Counter(end for file, end in ends if f"{file}/".startswith(f"{path}/"))
+            count_tests(path, own, is_exhaustive=is_exhaustive)
     return done.returncode
 
 

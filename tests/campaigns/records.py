@@ -62,10 +62,10 @@ def count_scenarios(ends: Mapping[str, int]) -> None:
     change(edit)
 
 
-def count_tests(path: str, ends: Mapping[str, int]) -> None:
-    """Set how many tests of a promise's file or folder ended how, the exhaustive ones included."""
+def count_tests(path: str, ends: Mapping[str, int], *, is_exhaustive: bool) -> None:
+    """Set how many tests of a promise's file or folder ended how."""
     day = datetime.now(UTC).date().isoformat()
-    last: dict[str, Any] = {"date": day, "exhaustive": True}
+    last: dict[str, Any] = {"date": day} | ({"exhaustive": True} if is_exhaustive else {})
     last |= {end: number for end, number in ends.items() if number}
     change(lambda known: known.setdefault("promises", {}).update({path: last}))
 

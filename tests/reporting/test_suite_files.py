@@ -132,6 +132,14 @@ def test_history_is_read_from_earlier_results_and_other_files_are_left_out(tmp_p
     assert shares == pytest.approx([1 / 6, 3 / 8, 1 / 2])
 
 
+@pytest.mark.parametrize("share", ["1" + "0" * 400, "1e999", "NaN"])
+def test_a_share_beyond_all_numbers_is_none(share, tmp_path):
+    margin = f'{{"share": {share}}}'
+    case = f'{{"file": "a", "case": "b", "worst_margin": {margin}}}'
+    (tmp_path / "a.json").write_text(f'{{"format": "armharness-results/1", "cases": [{case}]}}')
+    assert [*history_of(tmp_path).values()] in ([], [[None]])
+
+
 def test_annotations_stand_at_their_lines_and_cannot_be_broken_out_of():
     lines = list(error_annotations([passed(0), failed(1), STUCK, INVALID, BROKEN]))
     assert lines[0] == (

@@ -226,6 +226,6 @@ def _with_unit(expectation: str, text: str) -> str:
 
 
 def _number(text: str) -> float:
-    if not re.fullmatch(r"[-+.\de]+ \S+", text):
+    if not re.fullmatch(r"[-+.\de]+ \S+", text) or math.isinf(number := float(text.split()[0])):
         raise ValueError(f"'{text}' is no margin with a unit, such as '0.04 m'")
-    return float(text.partition(" ")[0])
+    return number

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any, cast
 
@@ -21,7 +22,10 @@ def read_document(file: Path, format_name: str, advice: str) -> dict[str, Any]:
         UsageError: The file cannot be read, or has another format.
     """
     try:
-        document = parse_json(read_at_most(file, RESULTS_DOCUMENT))
+        content = read_at_most(file, RESULTS_DOCUMENT)
+        document = parse_json(content)
+        if b"\\ud" in content.lower():
+            json.dumps(document, ensure_ascii=False).encode()  # half a character is no text
     except OSError as error:
         raise UsageError(f"'{file}' cannot be read: {error.strerror}; {advice}") from error
     except ValueError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from harness.plugins.ci.document import read_document
 from harness.plugins.ci.suite_reporters.junit import SAMPLE
@@ -56,8 +56,9 @@ def read_results(folder: Path) -> SavedSuite:
     try:
         rates = ((rate["file"], rate["group"]) for rate in document["rates"])
         cases = [_case(each) for each in document["cases"]]
-        return SavedSuite(document["outcome"], cases, frozenset(rates))
-    except (ValueError, KeyError, TypeError) as error:
+        known: tuple[Outcome, ...] = get_args(Outcome)
+        return SavedSuite(known[known.index(document["outcome"])], cases, frozenset(rates))
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"'{file}' is no file of results: {error}") from error
 
 

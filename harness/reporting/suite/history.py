@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
@@ -40,10 +41,11 @@ def _runs(folder: Path) -> Iterator[dict[Key, float | None]]:
             if document["format"] != FORMAT:
                 continue
             yield {(case["file"], case["case"]): _share(case) for case in document["cases"]}
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, OverflowError):
             continue
 
 
 def _share(case: dict[str, Any]) -> float | None:
     margin = case.get("worst_margin")
-    return None if margin is None else float(margin["share"])
+    share = math.nan if margin is None else float(margin["share"])
+    return share if math.isfinite(share) else None

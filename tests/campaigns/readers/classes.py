@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 from tests.campaigns import mutation
-from tests.campaigns.reader import Read, Reader, after_its_name, put
+from tests.campaigns.reader import Read, Reader, after_its_name, of_file, put
 
 
 def _archives(folder: Path) -> list[bytes]:
@@ -57,6 +57,19 @@ def _begin_archive(folder: Path) -> Read:
     return read
 
 
+ROSTER = b"""\
+submission,email,student_id,first_name,last_name,section
+ada,ada@example.org,1,Ada,L,a
+"b c",b@example.org,2,"B ""the"" second",C,b
+"""
+
+
+def _read_roster(path: Path) -> None:
+    from harness.plugins.grading.classroom.tables import read_roster
+
+    read_roster(path)
+
+
 ASSIGNMENT = b"""\
 assignment: Reach
 description: Move to three places.
@@ -87,5 +100,6 @@ READERS: dict[str, Reader] = {
     "submission": Reader(
         _archives, after_its_name(mutation.of_bytes), _begin_archive, is_named=True
     ),
+    "roster": Reader(lambda _: [ROSTER], mutation.of_text, of_file("roster.csv", _read_roster)),
     "assignment": Reader(lambda _: [ASSIGNMENT], mutation.of_yaml, _begin_assignment),
 }

@@ -1,4 +1,4 @@
-"""Readers of results of suites: shards and conditions."""
+"""Readers of results of suites: shards, conditions, streams, documents and baselines."""
 
 from __future__ import annotations
 
@@ -89,7 +89,66 @@ def _load_conditions(path: Path) -> None:
     list(conditions.cases(Path("a/part.scenario.yaml"), is_alone=True))
 
 
+def _results(folder: Path) -> list[bytes]:
+    part = _suite(folder / "suite")
+    return [(part / "results.jsonl").read_bytes()]
+
+
+def _query(path: Path) -> None:
+    """What `harness results` prints and exports of a suite's stream."""
+    from harness.plugins.campaigns.queries.database import DATABASE, open_campaign
+    from harness.plugins.campaigns.queries.filters import Query
+    from harness.plugins.campaigns.queries.table import rows, write_csv
+
+    path.with_name(DATABASE).unlink(missing_ok=True)
+    query = Query()
+    with open_campaign(path.parent) as database:
+        rows(database, query, 20, is_worst_first=True)
+        write_csv(database, query, path.with_name("runs.csv"))
+
+
+def _documents(folder: Path) -> list[bytes]:
+    from tests.damaged.front_door import outcome_of
+
+    outcome_of("merge", _suite(folder / "suite"), "--report-dir", folder / "merged")
+    return [(folder / "merged/results.json").read_bytes()]
+
+
+def _gate(path: Path) -> None:
+    """What `harness gate` and the page of a suite make of the results of an earlier run."""
+    from harness.plugins.ci.baseline import new_margins, shrunk_margins, updated
+    from harness.plugins.ci.comment import comment_text
+    from harness.plugins.ci.ctrf import ctrf_text
+    from harness.plugins.ci.results import read_results
+    from harness.reporting.suite.history import history_of
+
+    history_of(path.parent)
+    suite = read_results(path.parent)
+    ctrf_text(suite, path.parent).encode()
+    comment_text(suite, (), path.parent, "").encode()
+    margins = updated(suite.cases, {})
+    shrunk_margins(suite.cases, margins)
+    new_margins(suite.cases, margins)
+
+
+def _margins(folder: Path) -> list[bytes]:
+    del folder
+    margins = {"a.scenario.yaml [x=1]": {"always: within_limits": "0.04 rad", "never": "1 1"}}
+    return [json.dumps({"format": "armharness-margins/1", "margins": margins}).encode()]
+
+
+def _read_margins(path: Path) -> None:
+    from harness.plugins.ci.baseline import read_baseline, shrunk_margins, write_baseline
+
+    margins = read_baseline(path)
+    [str(each) for each in shrunk_margins((), margins)]
+    write_baseline(path.with_name("again.json"), margins)
+
+
 READERS: dict[str, Reader] = {
+    "results": Reader(_results, mutation.of_lines, of_file("results.jsonl", _query)),
+    "suite": Reader(_documents, mutation.of_json, of_file("results.json", _gate)),
+    "baseline": Reader(_margins, mutation.of_json, of_file("margins.json", _read_margins)),
     "shard": Reader(_shards, _mutated_shard, _begin_shard, is_named=True),
     "conditions": Reader(
         _conditions, mutation.of_lines, of_file("conditions.jsonl", _load_conditions)

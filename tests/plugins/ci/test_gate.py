@@ -347,3 +347,26 @@ def test_options_that_leave_no_whole_suite_are_refused(option, capsys):
     arguments = ["run", "lessons/04_gripper_alone", "--ctrf", "c.json", *option]
     assert main(arguments) == 2
     assert option[0] in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("margins.json", '{"margins": {"a": {"b": "1e999 m"}}}', "'1e999 m' is no margin"),
+        ("margins.json", '{"margins": {"a": {"b": "1 \\ud800"}}}', "can't encode"),
+        ("results.json", '{"outcome": "\\udfff"}', "can't encode"),
+        ("results.json", '{"cases": [{"verdicts": [[]]}], "rates": []}', "no file of results"),
+        ("results.json", '{"cases": [], "rates": [], "outcome": []}', "no file of results"),
+        ("results.json", '{"cases": [], "rates": [], "outcome": "0"}', "no file of results"),
+        ("results.json", '{"cases": [{"verdicts": 5}], "rates": []}', "no file of results"),
+    ],
+)
+def test_a_document_with_strange_numbers_and_texts_is_refused(name, text, said, folder, capsys):
+    kind = {"margins.json": "armharness-margins/1", "results.json": "armharness-results/1"}[name]
+    write_suite(folder / "reports", small_suite(), 0)
+    file = folder / ("reports/results.json" if name == "results.json" else name)
+    file.write_text(f'{{"format": "{kind}", {text[1:]}')
+    words = [] if name == "results.json" else ["--baseline", name]
+    assert main(["gate", "reports", "--ctrf", "c.json", *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not (folder / "c.json").exists()

@@ -133,7 +133,12 @@ def test_tables_have_the_columns_that_each_program_reads(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("name,email\na,b\n", "no column `submission`"), ("submission\na\na\n", "'a' is there twice")],
+    [
+        ("name,email\na,b\n", "no column `submission`"),
+        ("submission\na\na\n", "'a' is there twice"),
+        (f"submission\n{'x' * 200_000}\n", "is no CSV"),
+        (f"{'x' * 200_000}\na\n", "is no CSV"),
+    ],
 )
 def test_a_roster_with_mistakes_is_refused(tmp_path, text, words):
     (tmp_path / "roster.csv").write_text(text)

@@ -63,7 +63,7 @@ def open_campaign(folder: Path) -> Iterator[sqlite3.Connection]:
         with closing(_connected(folder / DATABASE)) as connection:
             _update(connection, journal)
             yield connection
-    except sqlite3.Error as error:
+    except (sqlite3.Error, OverflowError) as error:  # a number of more than 64 bits
         raise HarnessError(f"'{folder / DATABASE}': {error}") from error
 
 

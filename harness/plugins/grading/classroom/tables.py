@@ -43,14 +43,18 @@ def read_roster(path: Path) -> dict[str, dict[str, str]]:
     lines = read_text(path, kind="CSV of students").splitlines()
     reader = csv.DictReader(lines)
     known = {"submission", "section", *PERSON}
-    if "submission" not in (reader.fieldnames or ()):
+    try:
+        columns, rows = reader.fieldnames or (), [(reader.line_num, row) for row in reader]
+    except csv.Error as error:
+        raise SpecError([Problem(str(path), reader.line_num, 1, f"is no CSV: {error}")]) from error
+    if "submission" not in columns:
         message = "the first line names no column `submission`"
         raise SpecError([Problem(str(path), 1, 1, message, f"columns: {', '.join(sorted(known))}")])
     found: dict[str, dict[str, str]] = {}
-    for row in reader:
+    for number, row in rows:
         name = row["submission"]
         if name in found:
-            raise SpecError([Problem(str(path), reader.line_num, 1, f"'{name}' is there twice")])
+            raise SpecError([Problem(str(path), number, 1, f"'{name}' is there twice")])
         found[name] = {key: value or "" for key, value in row.items() if key in known}
     return found
 
@@ -138,13 +142,9 @@ def _nbgrader(grade: ClassGrade) -> Rows:
     rows = [list(NBGRADER)]
     for each in grade.students:
         person, score = each.person, number(each.earned)
-        rows.append(
-            [
-                *(grade.assignment.name, "", "", person.get("student_id") or each.submission.name),
-                *(person.get(key, "") for key in ("last_name", "first_name", "email")),
-                *(score, "0", score, number(each.points)),
-            ]
-        )
+        row = [grade.assignment.name, "", "", person.get("student_id") or each.submission.name]
+        row += [person.get(key, "") for key in ("last_name", "first_name", "email")]
+        rows.append([*row, score, "0", score, number(each.points)])
     return rows
 
 

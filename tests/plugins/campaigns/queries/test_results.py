@@ -65,6 +65,15 @@ def test_a_real_campaign_is_queried_by_what_varied_in_it(tmp_path, capsys):
     )
 
 
+@pytest.mark.parametrize("changed", [{"seed": 2**63}, {"line": 10**30}])
+def test_a_number_of_more_than_64_bits_is_an_error_of_the_results(changed, tmp_path, capsys):
+    folder = journal(tmp_path / "a", [entry(1, 0.1), entry(2, 0.1, **changed)])
+    assert main(["results", folder]) == 3
+    said = capsys.readouterr().err
+    assert "results.sqlite" in said
+    assert "Traceback" not in said
+
+
 @pytest.fixture
 def reports(tmp_path, capsys, monkeypatch):
     """Runs samples of a ball into one folder; the counts of the suite and of the query."""
