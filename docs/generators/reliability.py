@@ -266,7 +266,7 @@ def _promise(promise: str, tests: tuple[str, ...], last: dict[str, dict[str, Any
     day = f" on {min(each['date'] for each in known)}" if known else ""
     names = [each.rpartition("/")[2] for each in tests if last.get(each, {}).get("exhaustive")]
     whole = f"; exhaustive ones of {', '.join(names)}" if names else ""
-    unrun = [each for each in tests if not any(last.get(each, {}).get(end) for end in ENDS)]
+    unrun = [each for each in tests if each in last and not set(last[each]) & set(ENDS)]
     whole += "".join(f"; none of {each.rpartition('/')[2]}, which runs at night" for each in unrun)
     return f"| {promise} | {places} | {said}{day}{whole} |"
 
