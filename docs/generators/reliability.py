@@ -187,7 +187,7 @@ a warning of NumPy, or any other end than a located error is a finding. Each fin
 repaired for its whole class and became a test. The counts of all campaigns
 ([records.json](../../tests/campaigns/records.json)); "refused" are those that ended in a located
 error, the others were read. Time is processor time; up to seed 401 it was wall time. With `--total
-MINUTES`, the reader with the least time is next, again and again: `--minutes 60 --total 1860`
+MINUTES`, the reader with the least time is next, again and again: `--minutes 60 --total 2100`
 gives each of them an hour. `yaml`, `xml`, `set path`, `expression` and `quantity` are the parts
 that the readers of whole files share, without the files:"""
 
