@@ -105,15 +105,15 @@ class Simulator(Protocol):
         """
         ...
 
-    def force_on_robot(
-        self, span: float, held: Collection[str], along: FloatArray | None = None
-    ) -> float:
-        """Sum of the normal forces between the robot and other bodies, mean over some time [N].
+    def force_on_robot(self, span: float, held: Collection[str]) -> tuple[float, FloatArray]:
+        """Normal forces between the robot and other bodies, mean over some time [N].
 
         Args:
             span: The time until now [s].
             held: Objects that count as parts of the robot.
-            along: A unit vector in the world, of which the robot's push along it counts, (3,).
+
+        Returns:
+            The sum of their sizes, and the robot's push on the others, in the world, shape (3,).
         """
         ...
 

@@ -82,9 +82,9 @@ class DrySimulator:
 
     def use_controller(self, controller: JointController | None) -> None: ...
 
-    def force_on_robot(self, span: float, held: Collection[str], along: object = None) -> float:
+    def force_on_robot(self, span: float, held: Collection[str]) -> tuple[float, FloatArray]:
         """What a guarded move waits for happens."""
-        return float("inf")
+        return float("inf"), np.zeros(3)
 
     def wrench(self, sensor: str, span: float) -> FloatArray:
         """What a guarded move waits for happens."""

@@ -116,15 +116,15 @@ class ContactRecord:
             _add(sums, rows, self._forces[contacts])
         return {pair: found[pair] for pair in sorted(found)}
 
-    def force_on(self, own: Set[str], first: int, last: int, along: FloatArray | None) -> float:
-        """Mean normal force [N] of some bodies on all others; of a unit vector, along it."""
-        names, total = self._physics.body_names, 0.0
+    def force_on(self, own: Set[str], first: int, last: int) -> tuple[float, FloatArray]:
+        """Mean sum of some bodies' normal forces on all others, and their vector sum, (3,) [N]."""
+        names, total, push = self._physics.body_names, 0.0, np.zeros(3)
         for numbers, _, contacts in self._by_pair(first, last):
             inside, force = [each for each in numbers if names[each] in own], self._forces[contacts]
-            if len(inside) == 1 and along is not None:
-                force = force * self._signs(contacts, inside[0]) * (self._normals[contacts] @ along)
-            total += float(force.sum()) if len(inside) == 1 else 0.0
-        return total / (last - first)
+            if len(inside) == 1:
+                total += float(force.sum())
+                push += (force * self._signs(contacts, inside[0])) @ self._normals[contacts]
+        return total / (last - first), push / (last - first)
 
     def presses(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Contact points and normal forces between a link of the robot and any other body.

@@ -35,13 +35,11 @@ class MujocoSimulator(TrajectoryTracking):
         """T_world_object of the objects in the scene (xyz, quat wxyz), shape (7,) each."""
         return self._objects.present_poses()
 
-    def force_on_robot(
-        self, span: float, held: Collection[str], along: FloatArray | None = None
-    ) -> float:
-        """Sum of the normal forces between the robot and other bodies, mean over `span` [N]."""
+    def force_on_robot(self, span: float, held: Collection[str]) -> tuple[float, FloatArray]:
+        """The robot's normal forces and its push, mean over `span` [N]."""
         last, own = self._recording.count, {*self.description.link_names, *held}
         first = max(0, last - max(1, round(span / self._timestep)))
-        return self._recording.contacts.force_on(own, first, last, along)
+        return self._recording.contacts.force_on(own, first, last)
 
     def wrench(self, sensor: str, span: float) -> FloatArray:
         """What a sensor of force and torque reads, in its axes, mean over `span`, shape (6,)."""

@@ -175,6 +175,6 @@ class MoveUntil(Step):
     def _read(self, cell: Cell) -> float:
         """The force [N] or torque [N m] now."""
         if self.torque is None and self.sensor is None:
-            return cell.simulator.force_on_robot(LOOK, cell.held_objects)
+            return cell.simulator.force_on_robot(LOOK, cell.held_objects)[0]
         wrench = cell.simulator.wrench(sensor_of(cell.robot, self.sensor).name, LOOK)
         return float(np.linalg.norm(wrench[:3] if self.torque is None else wrench[3:]))

@@ -26,7 +26,8 @@ from harness.ports.motions import TimedLinkMotion
 SHORTEST_RAMP = 0.1  # [s], in which the link gets to its speed along the spiral, and to rest
 TURNING = 0.2  # [m/s^2], across the spiral's narrow first turns: joints of 1 rad/s^2 follow it
 LONGEST = 120.0  # [s], of a search
-PRESSED = 0.1  # [N] along the direction; less is no contact, as of `move_until`
+PRESSED = 0.1  # [N] along the direction or across it; less is no contact, as of `move_until`
+UNTOUCHED = 10.0  # times `drop`, by which it goes on where nothing tells a hole from free space
 
 
 @dataclass(frozen=True)
@@ -37,15 +38,30 @@ class Found(Detail):
     drop: float
 
 
+class Walls:
+    """What pushed a link across the direction of its search: walls around it, or on one side."""
+
+    def __init__(self) -> None:
+        self._first: FloatArray | None = None
+        self.are_around = False
+
+    def push(self, force: FloatArray) -> None:
+        """Take a force of the link [N], shape (3,); one against the first makes walls around it."""
+        if self._first is None and np.linalg.norm(force) >= PRESSED:
+            self._first = force / np.linalg.norm(force)
+        elif self._first is not None:
+            self.are_around |= bool(self._first @ force <= -PRESSED)
+
+
 class Search(Step):
     """Search a hole: go round a growing spiral until the link drops.
 
     The link is commanded along an Archimedean spiral across the direction, while something else
     presses it: `comply` with a `wrench` along the direction, around this step. Every 4 ms its
     measured place is looked at; where it has advanced by `drop` since it began to press, it stops.
-    The step fails where it advances without having pressed that way, as along a side wall, and when
-    the spiral has grown to `radius`. Over an edge it drops as into a hole; `inserted` expects the
-    hole.
+    A link that begins in the hole presses nothing that way: it is found where walls push it from
+    opposite sides. The step fails where it advances otherwise, as along a side wall, and when the
+    spiral has grown to `radius`. Over an edge it drops as into a hole; `inserted` expects the hole.
     """
 
     verb: ClassVar[str] = "search"
@@ -128,19 +144,28 @@ class Search(Step):
             StepFailed: CONTROL_FAILED; it did not drop from where it pressed.
         """
         begin = surface = _measured(cell, link)
-        advances, forces = [0.0], [0.0]
+        advances, forces, walls = [0.0], [0.0], Walls()
 
         def notices() -> bool:
             nonlocal surface
-            force = cell.simulator.force_on_robot(LOOK, cell.held_objects, axis)
-            if max(forces) < PRESSED:
+            total, push = cell.simulator.force_on_robot(LOOK, cell.held_objects)
+            if math.isinf(total):  # without physics
+                forces.append(total)
+                return True
+            force = float(push @ axis)
+            walls.push(push - force * axis)
+            if not is_touched():
                 surface = begin if force < PRESSED else _measured(cell, link)
             forces.append(force)
             advances.append(float((_measured(cell, link) - surface) @ axis))
-            return advances[-1] >= self.drop or math.isinf(forces[-1])  # inf: without physics
+            enough = self.drop * (1.0 if is_touched() else UNTOUCHED)
+            return advances[-1] >= enough
+
+        def is_touched() -> bool:
+            return max(forces) >= PRESSED or walls.are_around
 
         stopped = follow_until(planned, cell, notices)
-        if stopped is None or max(forces) < PRESSED:
+        if stopped is None or not is_touched():
             raise StepFailed("CONTROL_FAILED", self._failure(max(advances), float(np.mean(forces))))
         way = _measured(cell, link) - begin
         offset = float(np.linalg.norm(way - (way @ axis) * axis))
