@@ -137,7 +137,9 @@ def test_a_working_directory_that_was_deleted_is_named(folder, words):
         from harness.cli.main import main
         sys.exit(main({list(words)}))
     """
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    # -P: Python 3.13.0 cannot import `socket` where "" on sys.path names a deleted folder.
+    command = [sys.executable, "-P", "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "the working directory cannot be used: No such file or directory" in done.stderr
     assert list(folder.iterdir()) == [folder / "a.scenario.yaml"]

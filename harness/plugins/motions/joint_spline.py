@@ -31,9 +31,13 @@ class JointSpline:
         self.knots: FloatArray = np.concatenate([[0.0], np.cumsum(steps)])
         self.length = float(self.knots[-1])
 
-    @cached_property
+    @property
     def cubics(self) -> CubicSpline:
         """The curve, constant before its start and after its end."""
+        return self._cubics
+
+    @cached_property
+    def _cubics(self) -> CubicSpline:
         if len(self.knots) < 2:
             raise ValueError("the curve has no length")
         return CubicSpline.through(self.knots, self.samples, ends=(0.0, self.length))

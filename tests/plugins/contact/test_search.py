@@ -69,6 +69,13 @@ def test_a_peg_that_presses_nothing_finds_no_hole(tmp_path):
     assert "nothing was pressed meanwhile" in outside.step("find").message
 
 
+@pytest.mark.parametrize("offset", [0.0, pytest.param(5e-5, marks=pytest.mark.nightly)])
+def test_a_peg_that_begins_in_the_hole_finds_it_by_the_walls_around_it(offset, tmp_path):
+    inside = run_of(tmp_path, 0.1 + offset, PRESSING % SEARCH)
+    assert inside, str(inside)
+    assert inside.step("find").result.find(Found).drop >= 0.001
+
+
 @pytest.mark.parametrize("side", [1, pytest.param(-1, marks=pytest.mark.nightly)])
 def test_a_peg_that_rubs_along_a_side_wall_finds_no_hole(side, tmp_path):
     aside = f"move_relative: {{direction: {{xyz: [{-side}, 0, 0]}}, distance: 10.3 mm}}"

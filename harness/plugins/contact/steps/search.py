@@ -27,7 +27,7 @@ SHORTEST_RAMP = 0.1  # [s], in which the link gets to its speed along the spiral
 TURNING = 0.2  # [m/s^2], across the spiral's narrow first turns: joints of 1 rad/s^2 follow it
 LONGEST = 120.0  # [s], of a search
 PRESSED = 0.1  # [N] along the direction or across it; less is no contact, as of `move_until`
-UNTOUCHED = 10.0  # times `drop`, by which it goes on where nothing tells a hole from free space
+UNTOUCHED = 10.0  # times `drop`, by which it goes on while it has touched nothing
 
 
 @dataclass(frozen=True)
