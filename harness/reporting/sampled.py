@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from statistics import NormalDist
 from typing import Any, Literal
 
 from harness.core.printable import counted
+from harness.core.proportion import wilson_interval
 from harness.core.quantity import split_quantity
 from harness.recording.run import Outcome
 from harness.reporting.terminal import PLAIN, Style
@@ -51,10 +53,17 @@ class SuccessRate:
     @property
     def more(self) -> int:
         """How many more samples decide an open rate if as many of them pass; 0: no number does."""
-        required, gap = self.at_least or 0.0, self.passed / self.total - (self.at_least or 0.0)
+        required, share = self.at_least or 0.0, self.passed / self.total
+        if share == required:
+            return 0
         z = NormalDist().inv_cdf(0.5 + self.confidence / 2)
-        needed = required * (1 - required) * (z / gap) ** 2 if gap else 0.0  # Wilson's interval
-        return max(0, math.ceil(needed) - self.total)
+        least = int(required * (1 - required) * (z / (share - required)) ** 2)  # before rounding
+        for more in count(max(1, least - self.total)):
+            passed = self.passed + (math.floor if share > required else math.ceil)(more * share)
+            low, high = wilson_interval(passed, self.total + more, self.confidence)
+            if low >= required or high < required:
+                return more
+        return 0
 
 
 @dataclass(frozen=True)
@@ -87,13 +96,10 @@ def with_starts(rate: SuccessRate, starts: Sequence[tuple[bool, int]]) -> Succes
 
 
 def missed(rates: Sequence[SampledRate]) -> str:
-    """`1 of 4 success rates not confirmed`; empty where all are, or none is required.
-
-    It fails a suite all of whose cases pass.
-    """
+    """`1 of 4 success rates not confirmed`, which fails a suite; empty where none is missed."""
     required = [each for each in rates if each.rate.at_least is not None or each.rate.is_one_run]
-    count = sum(each.outcome != "passed" for each in required)
-    return f"{count} of {len(required)} success rates not confirmed" if count else ""
+    unconfirmed = sum(each.outcome != "passed" for each in required)
+    return f"{unconfirmed} of {len(required)} success rates not confirmed" if unconfirmed else ""
 
 
 def rate_line(name: str, rate: SuccessRate, style: Style = PLAIN) -> str:
@@ -103,27 +109,28 @@ def rate_line(name: str, rate: SuccessRate, style: Style = PLAIN) -> str:
 
 def rate_text(name: str, rate: SuccessRate) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (...): at least 90% is confirmed`."""
-    count = counted(rate.invalid, "sample")
+    invalid = f"{counted(rate.invalid, 'sample')} invalid"
     if not rate.total:
-        why = f"{count} invalid" if rate.invalid else "no sample ended"
-        return f"{name}: no rate, {why}"
+        return f"{name}: no rate, {invalid if rate.invalid else 'no sample ended'}"
     line = f"{name}: {rate.passed} of {rate.total} samples passed, {rate.passed / rate.total:.1%}"
     line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
     if rate.invalid:
-        line += f", {count} invalid and not counted"
+        line += f", {invalid} and not counted"
     if rate.is_one_run:
         line += f"; the {rate.total} samples are one and the same run (equal digests): nothing that"
         line += " `randomize` or the seed changes matters here, so they show no rate"
-    if rate.at_least is None:
-        is_shown = rate.verdict == "shown"
-        line += "" if is_shown else "; no rate is required (`expect_rate`), so every one must pass"
-    elif not rate.is_one_run:
-        required = f"at least {rate.at_least:.1%}"
-        line += {
-            "shown": f": {required} is confirmed",
-            "refuted": f": {required} is refuted",
-            "open": f": {required} is undecided: {_way_out(rate)}",
-        }[rate.verdict]
+    if rate.at_least is None and rate.verdict != "shown":
+        line += "; no rate is required (`expect_rate`), so every one must pass"
+    elif rate.at_least is not None and not rate.is_one_run:
+        way = "as many pass as are required; take many more samples"
+        if rate.verdict == "open" and rate.more:
+            way = f"if as many pass, {counted(rate.more, 'more sample')} would decide it"
+        ends = {
+            "shown": "confirmed",
+            "refuted": "refuted",
+            "open": f"undecided: {way}, or require less",
+        }
+        line += f": at least {rate.at_least:.1%} is {ends[rate.verdict]}"
     if rate.stopped_early:
         line += "; the sequential test needed no more"
     if rate.overlapping:
@@ -133,13 +140,6 @@ def rate_text(name: str, rate: SuccessRate) -> str:
         line += f"; {rate.redrawn} were drawn again, {rate.redraws} times in all,"
         line += " because objects overlapped at the start"
     return line
-
-
-def _way_out(rate: SuccessRate) -> str:
-    """What decides a rate that these samples do not."""
-    if not rate.more:
-        return "as many pass as are required; take many more samples, or require less"
-    return f"if as many pass, {counted(rate.more, 'more sample')} would decide it, or require less"
 
 
 def short_value(value: Any) -> str:

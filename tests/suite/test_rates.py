@@ -1,11 +1,13 @@
 """Success rates: against another implementation, and by their promised error."""
 
+import math
 import random
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from harness.core.printable import counted
 from harness.core.proportion import wilson_interval
 from harness.reporting.sampled import SampledRate, missed, rate_line, rate_text
 from harness.suite.sampling import Tally, decided
@@ -99,18 +101,43 @@ def test_a_rate_that_is_not_required_is_not_counted_as_unconfirmed(outcomes):
     assert both == "1 of 1 success rates not confirmed"
 
 
-@pytest.mark.parametrize("passed", [19, 21, 22, 23])
-def test_as_many_more_samples_as_are_named_decide_an_open_rate(passed):
-    outcomes = [number < passed for number in range(24)]
-    rate = rate_of(outcomes, 0.85, 0.95, stop_early=False)
-    assert rate.verdict == "open"
-    assert f"{rate.more} more samples would decide it" in rate_text("a", rate)
-    for count, is_decided in ((24 + rate.more, True), (24 + rate.more - 1, False)):
-        low, high = wilson_interval(count * passed / 24, count, 0.95)
-        assert (low >= 0.85 or high <= 0.85) is is_decided
+@pytest.mark.parametrize("required", [0.5, 0.8, 0.9])
+def test_the_named_number_of_whole_samples_is_the_smallest_that_decides_a_rate(required):
+    seen = 0
+    for total in (10, 24, 37):
+        for passed in range(1, total):
+            rate = rate_of([number < passed for number in range(total)], required, 0.95,
+                           stop_early=False)  # fmt: skip
+            if rate.verdict != "open" or passed / total == required:
+                continue
+            seen += 1
+            assert counted(rate.more, "more sample") in rate_text("a", rate)
+            whole = math.floor if passed / total > required else math.ceil
+            for more in range(max(1, rate.more - 20), rate.more + 1):
+                all_passed = passed + whole(more * (passed / total))
+                low, high = wilson_interval(all_passed, total + more, 0.95)
+                assert (low >= required or high < required) is (more == rate.more)
+    assert seen > 10
+
+
+def test_the_samples_named_for_22_of_24_decide_when_all_but_the_expected_failures_pass():
+    rate = rate_of([number < 22 for number in range(24)], 0.8, 0.95, stop_early=False)
+    passed = 22 + rate.more * 22 // 24
+    assert wilson_interval(passed, 24 + rate.more, 0.95)[0] >= 0.8
+    assert wilson_interval(42, 46, 0.95)[0] < 0.8
+    assert rate.more > 22
 
 
 def test_no_number_of_samples_decides_a_rate_that_is_the_required_one():
     rate = rate_of([True] * 3 + [False], 0.75, 0.95, stop_early=False)
     assert rate.more == 0
     assert "as many pass as are required" in rate_text("a", rate)
+
+
+def test_samples_that_could_not_be_run_are_counted_next_to_the_rate():
+    tally = Tally(0.5, 0.95, stop_early=False)
+    for number in range(4):
+        tally.add(number > 0, str(number))
+    assert "confidence), 2 samples invalid and not counted: at least" in rate_text(
+        "x", tally.rate(6, invalid=2)
+    )
