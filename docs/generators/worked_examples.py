@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from textwrap import indent
 
 import yaml
 
@@ -27,7 +28,12 @@ def example(word: str, *, is_step: bool) -> str:
         KeyError: No bundled scenario has the word.
     """
     uses = _found()[word, is_step]
-    file, text = min(uses, key=lambda use: ("expect_error" in use[1], abs(len(use[1]) - LENGTH)))
+    unlike = ("expect_error", "blend_radius")  # a step that fails, or one that stands in `sequence`
+    file, text = min(
+        uses, key=lambda use: (any(key in use[1] for key in unlike), abs(len(use[1]) - LENGTH))
+    )
+    if not is_step:
+        text = "expect:\n" + indent(text, "  ")
     name = file.relative_to(SCENARIOS).as_posix().partition(".")[0]
     link = f"[`{name}`](../../{file.relative_to(ROOT).as_posix()})"
     return f"As in {link}:\n\n```yaml\n{text}\n```"

@@ -21,6 +21,8 @@ from docs.generators.examples import (
     shown,
 )
 from harness.cli.main import parser_of
+from harness.language.files.source import Source
+from harness.language.files.yaml_file import parse_yaml
 from harness.plugins.authoring.scenario_schema import schema_text
 
 EVERY_PAGE = sorted(
@@ -153,7 +155,7 @@ def described(block):
     text = block["text"]
     if text.startswith("- "):
         text = f"steps:\n{text}"
-    content = yaml.safe_load(text)
+    content = parse_yaml(text, Source.of_text("a page", text)).plain()  # `on` is a word, not true
     if {*content} & {"jobs", "include", "kind", "arm", "assignment"}:
         return None
     robot = {} if "robots" in content else {"robot": "ur3e"}
