@@ -51,13 +51,8 @@ class FailureRate:
 
     @property
     def sentence(self) -> str:
-        """The rate in one sentence."""
-        where = f"{self.failed} of {self.total} low-discrepancy samples failed"
-        sure = f"with {self.confidence:.0%} confidence"
-        if not self.failed:
-            return f"{where}: {sure}, at most {self.high:.2%} of the ranges fails"
-        share = self.failed / self.total
-        return f"{where}: {share:.2%} of the ranges fails, {sure} {self.low:.2%} to {self.high:.2%}"
+        """The runs that were not chosen near failures; no rate is said of a search."""
+        return f"{self.failed} of {self.total} low-discrepancy samples failed"
 
 
 @dataclass(frozen=True)

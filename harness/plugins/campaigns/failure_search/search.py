@@ -20,7 +20,7 @@ from harness.suite.cases import read_ahead
 from harness.suite.discovery import UsageError
 from harness.suite.header import read_header
 from harness.suite.stream import Stream
-from harness.suite.variation import ONE_CASE, Variation
+from harness.suite.variation import Variation
 from harness.suite.warm import WarmServer
 
 
@@ -107,7 +107,6 @@ class SearchResult:
         nominal: The run of the scenario as its file has it.
         failures: One for each kind of failure; if the nominal scenario fails, none.
         uncounted: Runs that are no evidence: invalid values, or overlaps where the file redraws.
-        variation: The variation of the file, with the rate that it requires.
     """
 
     request: SearchRequest
@@ -117,7 +116,6 @@ class SearchResult:
     exploration: Exploration
     failures: tuple[Failure, ...]
     uncounted: int = 0
-    variation: Variation = ONE_CASE
 
 
 def search(
@@ -162,7 +160,7 @@ def search(
         raise HarnessError(f"the nominal scenario ends in an error: {nominal.result.message}")
     if nominal.result.outcome == "failed":
         return SearchResult(
-            request, overrides, space, nominal, Exploration((), (nominal,), {}, 1), (), 0, variation
+            request, overrides, space, nominal, Exploration((), (nominal,), {}, 1), ()
         )
 
     def is_counted(sample: Sample) -> bool:
@@ -186,9 +184,7 @@ def search(
         on_stage(f"shrinking: {failure_text(samples[0].result)}")
         failures.append(_shrunk(space, evaluate, kind, samples))
     uncounted = sum(not is_counted(each) for each in exploration.samples)
-    return SearchResult(
-        request, overrides, space, nominal, exploration, tuple(failures), uncounted, variation
-    )
+    return SearchResult(request, overrides, space, nominal, exploration, tuple(failures), uncounted)
 
 
 def _case_overrides(file: Path, name: str, variation: Variation) -> dict[str, str]:

@@ -13,11 +13,9 @@ from harness.language.reading.load import load_scenario
 from harness.language.reading.resolve import resolved_text
 from harness.language.reading.written import as_written
 from harness.plugins.campaigns.failure_search.evaluator import Sample
-from harness.plugins.campaigns.failure_search.explore import FailureRate
 from harness.plugins.campaigns.failure_search.search import Failure, SearchResult
 from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import FailingChange, SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite_page
@@ -25,7 +23,6 @@ from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated
 from harness.suite.discovery import SUFFIX
 from harness.suite.folders import place_of
-from harness.suite.sampling import Tally
 from harness.suite.warm import WarmServer
 
 FORMAT = "armharness-search/1"
@@ -161,11 +158,9 @@ def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
         for each, case in zip(written.failures, failing, strict=True)
     ]
     outcome = "failed" if is_failing(found) else "passed"
-    rate = found.exploration.rate
-    rates = [] if rate is None else [_sampled(found, rate)]
     with writing(folder), replaced(folder / NUMBERS) as file:
         file.write(json_text(search_document(found, written)).encode())
-    record = SuiteRecord(outcome, cases, rates, title=_title(found), failing_changes=changes)
+    record = SuiteRecord(outcome, cases, [], title=_title(found), failing_changes=changes)
     return write_suite_page(folder, record)
 
 
@@ -177,8 +172,10 @@ def _title(found: SearchResult) -> str:
     if not found.failures:
         return f"{name}: no failure in {counted(runs, 'run')}"
     failed = sum(each.result.outcome != "passed" for each in found.exploration.samples)
-    ways = counted(len(found.failures), "way")
-    return f"{name}: {failed} of {counted(runs, 'run')} failed, in {ways}"
+    places = "1 step or expectation"
+    if len(found.failures) > 1:
+        places = f"{len(found.failures)} steps or expectations"
+    return f"{name}: {failed} of {counted(runs, 'run')} failed, in {places}"
 
 
 def is_failing(found: SearchResult) -> bool:
@@ -192,24 +189,6 @@ def _reported(written: WrittenFailure) -> CaseResult:
     report, page = written.result.report_dir, written.result.page
     result = written.failure.nearest.result
     return replace(result, case=name, report_dir=report, page=page)
-
-
-def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
-    """The share that passes, as the pages of suites show rates."""
-    stated = found.variation
-    tally = Tally(stated.at_least, stated.confidence, stop_early=False)
-    for each in found.exploration.start:
-        tally.add(each.result.outcome == "passed", each.result.digest)
-    shown = tally.rate(tally.total)
-    if stated.at_least is None:
-        shown = replace(shown, low=1 - rate.high, high=1 - rate.low, confidence=rate.confidence)
-        shown = replace(shown, verdict="refuted" if found.failures else "shown")
-    return SampledRate(
-        str(found.request.file),
-        f"the first {rate.total} runs, which cover the ranges evenly",
-        shown,
-        "passed" if shown.verdict == "shown" else "failed",
-    )
 
 
 def search_document(found: SearchResult, written: Written) -> dict[str, object]:
