@@ -68,7 +68,7 @@ def suite_html(
         has_history=bool(history),
         wall=record.wall,
         of_cases=sum(each["wall"] for each in rows.values()),
-        made=_made(),
+        made=made(),
         unlisted=total - len(rows),
     )
 
@@ -86,7 +86,7 @@ def _replay(name: str, case: SuiteCase, folder: Path) -> dict[str, str]:
     return {"name": name, "outcome": case.result.outcome, "link": link, "picture": encoded}
 
 
-def _made() -> list[str]:
+def made() -> list[str]:
     """When, from which commit of this folder, with what and where a page is made."""
     commit = ""
     if shutil.which("git"):

@@ -22,6 +22,7 @@ from harness.plugins.grading.assignment import (
     LoadedAssignment,
     read_assignment,
 )
+from harness.plugins.grading.classroom.pages import losses, write_pages
 from harness.plugins.grading.classroom.results import (
     ClassGrade,
     Criterion,
@@ -67,6 +68,18 @@ NOTHING = replace(student("=cmd|' /C calc'!A1"), problem="it lacks a .scenario.y
 def class_of(*students):
     model = Assignment(assignment="Lift it", scenario="lift.scenario.yaml")
     return ClassGrade(LoadedAssignment(model, Path("lift"), None), students, "process")
+
+
+def test_only_judged_failures_count_as_failures_of_a_class(tmp_path):
+    unreached = Verdict("it is lifted", "not reached"), Verdict("it is fast", "failed", -1.0, "s")
+    grade = class_of(GOOD, student("low", (LOW, PASSED[1])), student("far", unreached), NOTHING)
+    lifted, fast = losses(grade)
+    assert lifted[2] == {"failed": 1, "not reached": 1, "not run": 1}
+    assert fast[2] == {"failed": 1, "not run": 1}
+    text = write_pages(grade, tmp_path).read_text()
+    assert "<td>1 in the public case, 1 not reached, 1 not run</td>" in text
+    assert "<td>1 in the public case, 1 not run</td>" in text
+    assert re.search(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC · .*armharness \d", text)
 
 
 def read_table(file):

@@ -48,19 +48,15 @@ def write_pages(grade: ClassGrade, folder: Path) -> Path:
     return folder / PAGE
 
 
-def losses(grade: ClassGrade) -> list[tuple[Criterion, float, int, list[str]]]:
-    """What each criterion cost the class, the most expensive first.
-
-    Returns:
-        The criterion, its lost points, the number of submissions that fail it in the public case,
-        and the names of those that fail it in a hidden case alone.
-    """
-    found: list[tuple[Criterion, float, int, list[str]]] = []
+def losses(grade: ClassGrade) -> list[tuple[Criterion, float, Counter[str], list[str]]]:
+    """Criteria by lost points, with statuses in the public case and who fails only hidden ones."""
+    found: list[tuple[Criterion, float, Counter[str], list[str]]] = []
     for index, criterion in enumerate(grade.criteria):
-        students = grade.students
-        lost = sum(criterion.points - (s.earned_of(index) if s.runs else 0.0) for s in students)
-        public = sum(s.public is None or bool(s.public.marks[index].reason) for s in students)
-        hidden = [s.submission.name for s in students if index in s.hidden_loss]
+        lost = sum(criterion.points - s.earned_of(index) for s in grade.students)
+        marks = [s.public.marks[index] if s.public else None for s in grade.students]
+        unmet = [each and each.verdict for each in marks if not each or each.reason]
+        public = Counter(each.status if each else "not run" for each in unmet)
+        hidden = [s.submission.name for s in grade.students if index in s.hidden_loss]
         found.append((criterion, round(lost, 6), public, hidden))
     return sorted(found, key=lambda each: -each[1])
 
@@ -92,6 +88,7 @@ def _class_html(grade: ClassGrade, folder: Path) -> str:
         script="",
         style=_style(),
         title=grade.assignment.model.assignment,
+        made=suite_page.made(),
         students=students,
         links=links,
         failed_hidden=failed_hidden,
