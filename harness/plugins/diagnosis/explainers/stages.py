@@ -81,7 +81,7 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageF
     nearest = NearestState(
         "goal in collision", request.joints(positions), touches=touch_records(found)
     )
-    advice = f"choose other joint positions, or move {found[0].second} out of the way"
+    advice = f"choose other joint positions, which keep away from {found[0].second}"
     return [reach, StageFinding(stage, nearest, advice)]
 
 
