@@ -27,6 +27,7 @@ from harness.plugins.grading.classroom.results import (
     ClassGrade,
     Criterion,
     StudentGrade,
+    advice,
     graded_run,
 )
 from harness.plugins.grading.classroom.submissions import Submission
@@ -80,6 +81,35 @@ def test_only_judged_failures_count_as_failures_of_a_class(tmp_path):
     assert "<td>1 in the public case, 1 not reached, 1 not run</td>" in text
     assert "<td>1 in the public case, 1 not run</td>" in text
     assert re.search(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC · .*armharness \d", text)
+
+
+@pytest.mark.parametrize(
+    ("reason", "says"),
+    [
+        ("red_box rose 0.37 mm of 50.0 mm, but pressed for 0.012 s so far", "Check the grasp"),
+        ("red_box rose 0 mm of 50.0 mm, but nothing holds red_box", "Check the grasp"),
+        ("lifted 13.8 mm of 50.0 mm: left finger 5.0 N, right finger 5.0 N", "Raise it further"),
+    ],
+)
+def test_the_advice_on_a_lift_depends_on_whether_it_was_held(tmp_path, reason, says):
+    criteria = (Criterion("it is lifted", 6.0, advice()["lifted"]),)
+    low = replace(LOW, reason=reason)
+    write_pages(class_of(student("low", (low,), criteria=criteria)), tmp_path)
+    text = (tmp_path / "students/low/index.html").read_text()
+    assert re.search('<p class="advice">(.*?)</p>', text)[1].startswith(says)
+
+
+@pytest.mark.parametrize(
+    ("words", "time"), [("eventually: it is grasped", "6.00"), ("never: collision", "0.00")]
+)
+def test_the_replay_of_what_never_came_true_opens_at_the_end(tmp_path, words, time):
+    report = tmp_path / "students/late/run/report.html"
+    verdict = replace(LOW, expectation=words, time=0.0)
+    one = student("late", (verdict,), criteria=CRITERIA[:1])
+    result = replace(one.runs[0].result, page=str(report), sim_time=6.0)
+    write_pages(class_of(replace(one, runs=(replace(one.runs[0], result=result),))), tmp_path)
+    text = (tmp_path / "students/late/index.html").read_text()
+    assert f'href="run/report.html#t={time}&amp;expect=1"' in text
 
 
 def read_table(file):
