@@ -91,7 +91,10 @@ def test_the_first_plots_are_what_failed_with_its_limit_and_the_judged_time(open
     shown = page.locator(".plot select").evaluate_all(
         "all => all.map((each) => each.selectedOptions[0].textContent)"
     )
-    assert shown[:2] == ["object height gained [mm]", "position error [mm]"]
+    assert shown[:2] == [
+        "rise of the object's frame (verdicts: of its lowest point) [mm]",
+        "position error [mm]",
+    ]
     page.click("#panel-expect .verdict >> nth=1")
     wait_for_frame(page)
     assert "t = 1.19 s of 0.60 to 1.19 s" in page.inner_text("#panel-expect .verdict >> nth=1")

@@ -306,6 +306,7 @@ def test_a_telephone_sees_everything_without_scrolling_sideways(visit, failed_ru
     opened = visit(failed_run / "report.html", width=390, height=800, has_scene=True)
     page = opened.page
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate("scrollY") == 0  # opened at its failure, whose verdict is farther down
     for name in ("#view", "#track", "#steps", "#tabs", ".plot canvas"):
         assert page.locator(name).first.bounding_box()["width"] > 200, name
     assert picture(page).std() > 10

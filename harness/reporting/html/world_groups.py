@@ -146,9 +146,9 @@ def _moving(run: Run) -> dict[str, FloatArray]:
 
 
 def heights(run: Run) -> Group:
-    """How far objects rose."""
+    """How far the frames of objects rose; `lifted` judges the lowest point of a body."""
     series = {name: 1e3 * (poses[:, 2] - _first(poses)[2]) for name, poses in _moving(run).items()}
-    title = "object height gained"
+    title = "rise of the object's frame (verdicts: of its lowest point)"
     return Group("height", title, "mm", series, measure="height gained", factor=1e3)
 
 

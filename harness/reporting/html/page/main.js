@@ -4,7 +4,7 @@ import { Address, readAddress } from "./address.js";
 import { judgedSpan, momentOf, showCause } from "./cause.js";
 import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
-import { byId, scrollToTop } from "./dom.js";
+import { byId, scrollInto, scrollToTop } from "./dom.js";
 import { makeFilm } from "./film.js";
 import { keepDrawing } from "./frames.js";
 import { listenToKeys } from "./keys.js";
@@ -119,7 +119,7 @@ async function start() {
     scene?.pose(clock.time, stepNow(clock.time));
     plots.judge(judgedSpan(run, verdict), verdict.measures.map((measure) => ({ ...measure, plot: plotOf(run, measure) })));
     showTab("expect");
-    verdicts.querySelector(`[data-verdict="${index}"]`)?.scrollIntoView({ block: "nearest" });
+    scrollInto(verdicts.closest(".scroll"), verdicts.querySelector(`[data-verdict="${index}"]`));
     address.select({ expect: index + 1 });
   }
 
