@@ -69,6 +69,7 @@ def robot_message(cell: LiveCell) -> Message:
             for form in map(ObjectForm.of, cell.document.object_specs())
         ],
         "bodies": list(cell.cell.presence),
+        "fixed": [name for name, each in cell.cell.presence.items() if each.obj.is_static],
         "overlaps": [
             f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
             for touch in cell.simulator.overlaps_at_start

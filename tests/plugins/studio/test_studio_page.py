@@ -408,6 +408,46 @@ def test_every_number_of_the_page_changes_its_unit(opened):
     assert "180°" in opened.page.inner_text("#joints")
 
 
+OBJECTS = """
+objects:
+  - {name: post, static: true, shapes: [{box: {size: [3 cm, 3 cm, 30 cm]}}],
+     pose: {xyz: [0.3, 0.3, 0.15]}}
+  - {name: slab, static: true, box: {size: [0.1, 0.1, 0.02]}, pose: {xyz: [0.3, -0.3, 0.01]}}
+  - {name: cube, box: {size: [5 cm, 5 cm, 5 cm]}, mass: 0.1, pose: {xyz: [0.2, 0, 0.025]}}
+  - {name: plank, box: {size: [1.5, 5 cm, 2 cm]}, mass: 0.3, pose: {xyz: [0, 0.5, 0.01]}}
+  - {name: tee, mass: 0.1, pose: {xyz: [0.3, 0.1, 0.05]}, shapes: [
+     {box: {size: [2 cm, 2 cm, 8 cm]}}, {box: {size: [6 cm, 2 cm, 2 cm]}}]}
+"""
+LISTED = "[...document.querySelectorAll('#object-list .object')].map((each) => each.innerText)"
+
+
+def test_the_list_of_objects_says_which_are_fixed(browser, serve):
+    text = new_text("by hand", {"model": "open_manipulator_x"}, "empty")
+    context = new_context(browser)
+    page = Page(context, serve(text + OBJECTS).address)
+    page.page.click("#show-objects")
+    page.wait("document.querySelectorAll('#object-list .object').length >= 5")
+    fixed = {each.split()[0]: "fixed" in each for each in page.page.evaluate(LISTED)}
+    assert {name for name, is_fixed in fixed.items() if is_fixed} >= {"post", "slab"}
+    assert not any(fixed[name] for name in ("cube", "plank", "tee"))
+    assert page.complaints == []
+    context.close()
+
+
+def test_plots_count_their_time_from_now_and_contradict_no_clock(browser, serve):
+    served = serve()
+    context = new_context(browser)
+    page = Page(context, served.address)
+    page.page.evaluate("document.getElementById('plots').classList.remove('folded')")
+    page.wait("(async () => (await import('/studio/plots.js')).times())()")
+    first, last, *ends = page.page.evaluate("import('/studio/plots.js').then((it) => it.times())")
+    assert (first, last) == (-12, 0)
+    assert ends
+    assert not any(ends)
+    assert page.page.inner_text("#clock") == "0.000 s"
+    context.close()
+
+
 @pytest.mark.nightly
 def test_a_second_page_watches_until_it_is_given_control(browser, opened, served):
     context = new_context(browser)

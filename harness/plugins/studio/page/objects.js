@@ -66,8 +66,9 @@ function showObjects() {
   const forms = new Map(robot.objects.map((each) => [each.name, each]));
   $("object-list").replaceChildren(...robot.bodies.map((name) => {
     const form = forms.get(name);
-    const size = form?.kind ? `${form.kind} ${form.size.map((each) => digits(each, "m")).join(" × ")}` : scene.objects.get(name)?.canMove ? "" : "fixed";
-    return element("button", { class: "object", "aria-pressed": String(name === scene.selected), onclick: () => pick(name) }, element("span", {}, name), element("small", {}, size));
+    const size = form?.kind ? `${form.kind} ${form.size.map((each) => digits(each, "m")).join(" × ")}` : "";
+    const said = [size, robot.fixed.includes(name) ? "fixed" : ""].filter(Boolean).join(", ");
+    return element("button", { class: "object", "aria-pressed": String(name === scene.selected), onclick: () => pick(name) }, element("span", {}, name), element("small", {}, said));
   }));
 }
 

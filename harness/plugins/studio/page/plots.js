@@ -66,12 +66,12 @@ function draw(now) {
     const kept = Float32Array.from(values.slice(first), (value) => shown(value, unit));
     const [low, high] = kept.reduce(([a, b], each) => [Math.min(a, each), Math.max(b, each)], [Infinity, -Infinity]);
     // up to now: what stands still is sent once
-    return { name, times: Float64Array.from([...times.slice(first), now]), values: Float32Array.from([...kept, kept.at(-1)]), low, high };
+    return { name, times: Float64Array.from([...times.slice(first), now], (time) => time - now), values: Float32Array.from([...kept, kept.at(-1)]), low, high };
   });
   if (!series.length) return;
-  plot.from = from;
-  plot.to = now;
-  plot.cursor = now + 1;
+  plot.from = -SPAN; // times are before now: the clock of the scenario stands still between its steps
+  plot.to = 0;
+  plot.cursor = 1;
   plot.show({ title: kind, unit: unitName(unit), series, limits: [], least: shown(LEAST[unit] ?? 0.1, unit) });
 }
 
@@ -83,6 +83,9 @@ const COLORED = (name, index) => {
 
 /** The newest value of each line, as it is drawn; for tests and for readers of the screen. */
 export const latest = () => plot?.data && Object.fromEntries(plot.data.series.map(({ name, values }) => [name, values.at(-1)]));
+
+/** The times that are drawn [s], 0 is now; for tests. */
+export const times = () => plot?.data && [plot.from, plot.to, ...plot.data.series.map((each) => each.times.at(-1))];
 
 export function startPlots() {
   plot = new Plot([], { onSeek() {}, onZoom() {}, onReset() {} });
