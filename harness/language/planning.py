@@ -91,8 +91,8 @@ class Planning(SpecModel):
     )
     padding: NonNegativeLength | None = Field(
         default=None,
-        description="The distance kept between every object and the robot with what it holds [m]; "
-        "the default is 2 mm.",
+        description="The distance kept between every object and the robot with what it holds, and "
+        "between two arms [m]; the default is 2 mm.",
     )
     seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] | None = Field(
         default=None,

@@ -26,7 +26,8 @@ class PlanningOptions:
         attempts: Plans tried, each with a seed of its own.
         velocity_scaling: The share of the joint velocity limits, (0, 1].
         acceleration_scaling: The share of the joint acceleration limits, (0, 1].
-        padding: Distance kept between robot (and what it holds) and every object [m].
+        padding: Distance kept between robot (and what it holds) and every object, and between arms
+            [m].
         seed: The seed of this step.
         root_seed: The seed that the seeds of nested steps follow from.
         parameters: The parameters of the planner: `range`, `goal_bias` ...

@@ -5,9 +5,13 @@ import pytest
 
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
+from harness.language.scenario import RobotSpec
 from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.assembly.several_arms import joined_arms
 from harness.ports.goals import PoseGoal
+from harness.robot.load import load_robot
 from tests.planning.lesson import ARM, TCP, Cell, at, thing, ur
 
 
@@ -64,6 +68,27 @@ def test_padding_is_kept_from_objects_but_not_between_links(cell, shape):
     assert cell.scene.touches(cell.state, gap - 0.002) == ()
     assert all("shelf" in pair for pair in pairs(cell.scene.touches(cell.state, gap + 0.002)))
     assert cell.scene.touches(cell.state, gap + 0.002)
+
+
+@pytest.mark.parametrize("holder", ["", "left", "right"])
+def test_padding_is_kept_between_two_arms_and_what_they_hold(holder):
+    bases = {"left": {"xyz": [0, 0.2, 0]}, "right": {"xyz": [0, -0.2, 0]}}
+    small = {"model": "open_manipulator_x"}
+    robot = joined_arms(
+        {arm: load_robot(RobotSpec.model_validate({**small, "base": bases[arm]})) for arm in bases}
+    )
+    scene, state = CoalScene(robot), robot.start_positions()
+    for x, name in enumerate(("rod", "post")):
+        scene.add_object(thing(name, at(0.3 + x, 0, 0.3), Shape(Box((0.1, 0.1, 0.1)))), at(0, 0, 2))
+    carried = dict(robot.arm_of_link)
+    if holder:
+        link = robot.of_arm[holder].tcp_link
+        scene.attach_object("rod", link, (), state)
+        carried["rod"] = holder
+    found = [({t.first, t.second}, keeps) for t, keeps in scene.distances(state)]
+    owners = [({carried.get(name, name) for name in pair}, keeps) for pair, keeps in found]
+    assert {"left", "right"} in [owner for owner, keeps in owners if keeps]
+    assert all(keeps == (len(owner) == 2) for owner, keeps in owners)
 
 
 def test_a_capsule_is_round_at_its_ends(cell):

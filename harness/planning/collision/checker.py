@@ -39,10 +39,10 @@ changes by a few per cent between two of them."""
 class MotionChecker:
     """Answers whether a group's joint positions, and straight lines between them, are free.
 
-    Every pair keeps its margin: the padding between robot and objects, zero for other pairs. A pair
-    that is nearer at the start (an object resting on its table, a finger next to the object that it
-    grasps) keeps its start distance minus `MARGIN_SLACK` instead: it may separate and slide, but
-    not penetrate deeper. A pair without contact at the start never gets into contact.
+    Every pair keeps its margin: the padding between robot and objects and between two arms, zero
+    for other pairs. A pair that is nearer at the start (an object resting on its table, a finger
+    next to what it grasps) keeps its start distance minus `MARGIN_SLACK` instead: it may separate
+    and slide, but not penetrate deeper. A pair without contact at the start never gets into one.
 
     A motion is free when all its states at the requested spacing are free. The compiled check does
     not look at most of them one by one: where every pair is farther apart than a stretch of the

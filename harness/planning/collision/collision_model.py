@@ -77,7 +77,7 @@ class CollisionModel:
         pairs: The indices of two bodies that are checked against each other, shape (K, 2); first
             the robot's link or the held object where there is one.
         keeps_padding: Whether a pair is the robot (or what it holds) and an object of the world
-            that it is not about to grasp, shape (K,).
+            that it is not about to grasp, or two arms (or what they hold), shape (K,).
     """
 
     robot: RobotModel

@@ -206,7 +206,7 @@ class CoalScene:
     def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, bool]]:
         """Signed distance of every checked pair of bodies [m], nearest first.
 
-        With it, whether the pair is of the robot and an object, which keep the padding.
+        With it, whether the pair keeps the padding: the robot and an object, or two arms.
         """
         model = self.collision_model()
         nearest = np.full(len(model.pairs), np.inf)
@@ -264,9 +264,11 @@ class CoalScene:
         swapped = is_held[second] & ~is_link[first]
         pairs = np.column_stack([first, second])
         pairs[swapped] = pairs[swapped, ::-1]
-        on_robot = (is_link | is_held)[pairs]
-        padded = ~_among(bodies, self._unpadded)[first, second]
-        keeps_padding = padded & (on_robot[:, 0] != on_robot[:, 1])
+        carriers = [body.name if body.is_link else self._objects[body.name].link for body in bodies]
+        arms = np.array([self.description.arm_of_link.get(link or "", "") for link in carriers])
+        on_robot, arm = (is_link | is_held)[pairs], arms[pairs]
+        differ = (on_robot[:, 0] != on_robot[:, 1]) | (arm[:, 0] != arm[:, 1]) & (arm != "").all(1)
+        keeps_padding = ~_among(bodies, self._unpadded)[first, second] & differ
         return CollisionModel(self.robot, tuple(bodies), pairs, keeps_padding)
 
     def _allowed_pairs(self) -> Iterator[tuple[str, str]]:
