@@ -20,7 +20,7 @@ from harness.reporting.suite.history import History
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.rows import row_facts
 from harness.reporting.suite.section import sections
-from harness.reporting.terminal import OUTCOMES, failure_place
+from harness.reporting.terminal import OUTCOMES
 
 FOLDER = Path(__file__).with_name("page")
 MOST_ROWS = 10_000  # cases that the page lists
@@ -43,12 +43,11 @@ def suite_html(
     packer = Packer()
     urgent = columns.listed  # the first of them get pictures
     rows = {i: row_facts(i, record.cases[i], folder, history or {}, packer) for i in urgent}
-    plain = [record.cases[i] for i in urgent[:MOST_PLAIN_ROWS]]
     passed = f"{outcomes['passed']} of {total} passed"
     return bundle.rendered(
         FOLDER / "suite.html",
         script=bundle.script(FOLDER / "suite.js"),
-        style=bundle.theme() + _read("suite.css"),
+        style=bundle.theme() + (FOLDER / "suite.css").read_text(encoding="utf-8"),
         record=record,
         title=record.title or "; ".join(filter(None, (passed, missed(record.rates)))),
         failing_changes=[
@@ -63,7 +62,7 @@ def suite_html(
         ],
         **{"campaign": None, **sections(columns, record.cases, folder)},
         is_campaign=len(columns.numbers) + outcomes["invalid"] == total,
-        plain=[(each, _link(each, folder)) for each in plain],
+        plain=[(c := record.cases[i], c.address(folder)) for i in urgent[:MOST_PLAIN_ROWS]],
         data=packer.text({"rows": [rows[i] for i in sorted(rows)], "history": bool(history)}),
         has_history=bool(history),
         wall=record.wall,
@@ -73,17 +72,11 @@ def suite_html(
     )
 
 
-def _link(case: SuiteCase, folder: Path) -> str:
-    """The page of a case at its first failure; empty for none."""
-    return case.link(folder) + (failure_place(case.result) if case.result.page else "")
-
-
 def _replay(name: str, case: SuiteCase, folder: Path) -> dict[str, str]:
     """A run next to another one: its name, its page at the deciding moment, and a picture."""
-    picture = deciding_picture(case.result, REPLAY_WIDTH)
-    link = _link(case, folder)
-    encoded = base64.b64encode(picture).decode() if picture else ""
-    return {"name": name, "outcome": case.result.outcome, "link": link, "picture": encoded}
+    link, picture = case.address(folder), deciding_picture(case.result, REPLAY_WIDTH) or b""
+    shown = {"link": link, "picture": base64.b64encode(picture).decode()}
+    return {"name": name, "outcome": case.result.outcome, **shown}
 
 
 def made() -> list[str]:
@@ -96,7 +89,3 @@ def made() -> list[str]:
     program = f"armharness {library_versions()['armharness']}, Python {platform.python_version()}"
     made = [f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", commit and f"commit {commit}"]
     return [*filter(None, made), program, machine]
-
-
-def _read(name: str) -> str:
-    return (FOLDER / name).read_text(encoding="utf-8")

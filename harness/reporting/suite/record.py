@@ -18,6 +18,7 @@ from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import Cause, cause_of
+from harness.reporting.terminal import failure_place
 
 FORMAT = "armharness-results/1"
 
@@ -61,6 +62,10 @@ class SuiteCase:
         target = self.result.page or self.result.report_dir
         return link_from(folder, target) if target else ""
 
+    def address(self, folder: Path) -> str:
+        """The same, at the first failure."""
+        return self.link(folder) + (failure_place(self.result) if self.result.page else "")
+
     @property
     def urgency(self) -> tuple[bool, float]:
         """Failures first, then what is nearest to failing."""
@@ -72,13 +77,16 @@ class FailingChange:
     """A change of a scenario with which it fails.
 
     Attributes:
-        changes: Path, value in the file and value with which it fails, of each parameter.
+        changes: Path, value in the file and value with which it fails, of each parameter, and where
+            both stand in its range, from 0 to 1; None of words.
         cause: Why it fails, in a line.
+        again: The command that shows it.
         replays: What each run is, and its case: the file as it is, and the changed one.
     """
 
-    changes: Sequence[tuple[str, Any, Any]]
+    changes: Sequence[tuple[str, Any, Any, tuple[float, float] | None]]
     cause: str
+    again: str
     runs: int
     replays: Sequence[tuple[str, SuiteCase]]
 
@@ -94,6 +102,7 @@ class SuiteRecord:
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
         title: What the page is called instead of the number of cases that passed.
         failing_changes: What a search found, the smallest change first.
+        tried: What the search did, a sentence each.
         progress: The number of runs that are done while the suite runs; empty when it has ended.
         wall: Wall time from the first case to the last [s]; 0 where it is not known.
     """
@@ -105,6 +114,7 @@ class SuiteRecord:
     missing_parts: Sequence[str] = ()
     title: str = ""
     failing_changes: Sequence[FailingChange] = ()
+    tried: Sequence[str] = ()
     progress: str = ""
     wall: float = 0.0
 

@@ -45,25 +45,17 @@ class SearchCommand(Command):
         add_seed(command, "use this seed for every run and for the search,")
         text = "search this parametrised case, where the file has several"
         add("--case", metavar="NAME", default="", help=text)
-        text = (
-            "make N runs, not counting those that shrink a failure (default: the file's `search`,"
-            " or 100)"
-        )
+        text = "make N runs, besides those that shrink a failure (default: the file's, or 100)"
         add("--runs", metavar="N", type=whole_number, default=None, help=text)
-        text = (
-            "begin with N low-discrepancy samples, which estimate the failure rate (default: the"
-            " file's, or 32)"
-        )
+        text = "begin with N low-discrepancy samples (default: the file's, or 32)"
         add("--start", metavar="N", type=whole_number, default=None, help=text)
-        text = (
-            "let the optimiser propose N runs at a time (default: the file's, or 4 + 3 ln(number of"
-            " parameters))"
-        )
+        text = "propose N runs at a time (default: the file's, or 4 + 3 ln(number of parameters))"
         add("--batch", metavar="N", type=whole_number_from(2, 1000), default=None, help=text)
         text = "minimise the margin of this expectation (default: the file's, or the worst margin)"
         add("--minimise", metavar="NAME", default=None, help=text)
-        text = "make N runs side by side"
-        add("-j", metavar="N", dest="workers", type=whole_number, default=1, help=text)
+        add(
+            "-j", metavar="N", dest="workers", type=whole_number, default=1, help="make N at a time"
+        )
         text = "continue where the same command was interrupted, and keep the results that exist"
         add("--resume", action="store_true", help=text)
         add_hard_cap(command, "run")
@@ -181,10 +173,7 @@ def _show(arguments: argparse.Namespace, found: SearchResult, written: Written) 
         say(exploration.rate.sentence)
     runs = found.request.settings.runs
     if len(exploration.samples) < runs:
-        say(
-            f"the search ended before {runs} runs: no expectation that has not failed has a margin"
-            " that varies"
-        )
+        say(f"the search ended before {runs} runs: no margin varies of what has not failed")
     if found.uncounted:
         say(f"{found.uncounted} runs are invalid or begin with an overlap, and do not count")
     if not written.failures:

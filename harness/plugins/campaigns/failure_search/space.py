@@ -41,6 +41,13 @@ class Parameter:
         return self.distribution.choice is None
 
     @property
+    def range(self) -> str:
+        """What it was varied over, in words."""
+        if not self.is_number:
+            return ", ".join(map(str, self.distribution.choice or ()))
+        return "{:.3g} to {:.3g} {}".format(*self.bounds, self.distribution.unit).rstrip()
+
+    @property
     def bounds(self) -> tuple[float, float]:
         """The ends of the distribution's range, in its own unit."""
         tail = 0.0 if self.distribution.normal is None else TAIL
@@ -60,6 +67,16 @@ class Parameter:
         """The value of a number in the unit of the distribution, rounded to the step."""
         digits = max(0, -math.floor(math.log10(self.step)))
         return self.distribution.written(round(number, digits))
+
+    def places(self, value: Any) -> tuple[float, float] | None:
+        """Where the nominal value and another stand in the range, from 0 to 1; None of words."""
+        if not self.is_number:
+            return None
+        low, high = self.bounds
+        nominal, other = (
+            (self.number(each) - low) / (high - low) for each in (self.nominal, value)
+        )
+        return nominal, other
 
     def change(self, value: Any) -> float:
         """How far a value is from the nominal one, as a share of the range; 1 for words."""

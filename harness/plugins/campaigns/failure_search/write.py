@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from harness.language.reading.resolve import resolved_text
 from harness.language.reading.written import as_written
 from harness.plugins.campaigns.failure_search.evaluator import Sample
 from harness.plugins.campaigns.failure_search.search import Failure, SearchResult
+from harness.plugins.campaigns.failure_search.space import Parameter
 from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult
 from harness.reporting.suite.cause import cause_of
@@ -89,10 +91,8 @@ def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> Wri
     jobs.append(RunRequest(found.request.file, overrides, seed=seed, report_dir=folder / "nominal"))
     cap = found.request.hard_cap
     results = dict(run_isolated(jobs, server, workers=found.request.workers, hard_cap=cap))
-    written = [
-        WrittenFailure(failure, file, results[index])
-        for index, (failure, file) in enumerate(zip(failures, files, strict=True))
-    ]
+    pairs = enumerate(zip(failures, files, strict=True))
+    written = [WrittenFailure(failure, file, results[index]) for index, (failure, file) in pairs]
     return Written(written, results[len(files)])
 
 
@@ -111,18 +111,26 @@ def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
     return comments + resolved_text(loaded, folder=folder)
 
 
-def changed(found: SearchResult, sample: Sample) -> list[tuple[str, Any, Any]]:
-    """Path, nominal value and value of each parameter that is not nominal."""
-    space = found.space
-    return [
-        (space.parameters[i].path, space.parameters[i].nominal, sample.point[i])
-        for i in space.changed(sample.point)
-    ]
+def changed(found: SearchResult, sample: Sample) -> list[tuple[Parameter, Any]]:
+    """Each parameter that is not nominal, with its value."""
+    indices = found.space.changed(sample.point)
+    return [(found.space.parameters[i], sample.point[i]) for i in indices]
 
 
 def changes(found: SearchResult, sample: Sample) -> list[str]:
     """`friction: 1.0 -> 0.42` for each parameter that is not nominal."""
-    return [f"{path}: {nominal} -> {value}" for path, nominal, value in changed(found, sample)]
+    return [f"{each.path}: {each.nominal} -> {value}" for each, value in changed(found, sample)]
+
+
+def tried(found: SearchResult) -> list[str]:
+    """What the search did, a sentence each."""
+    runs, start = len(found.exploration.samples), len(found.exploration.start)
+    ranges = ", ".join(f"{each.path} ({each.range})" for each in found.space.parameters)
+    shrunk = sum(each.shrink_runs for each in found.failures)
+    near = f", {runs - start} where margins are small" if runs > start else ""
+    more = [f"{counted(shrunk, 'more run')} found the smallest changes."] if shrunk else []
+    where = f"{start} spread evenly over the ranges{near}"
+    return [f"Varied: {ranges}.", f"{counted(runs, 'run')}, listed below: {where}.", *more]
 
 
 def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
@@ -150,8 +158,12 @@ def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
     ]
     changes = [
         FailingChange(
-            changed(found, each.failure.nearest),
+            [
+                (parameter.path, parameter.nominal, value, parameter.places(value))
+                for parameter, value in changed(found, each.failure.nearest)
+            ],
             cause.text if (cause := cause_of(each.result)) else each.failure.text,
+            shlex.join(["harness", "run", str(each.file)]),
             len(each.failure.samples),
             (("the file as it is", unchanged), ("with the change", case)),
         )
@@ -160,7 +172,7 @@ def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
     outcome = "failed" if is_failing(found) else "passed"
     with writing(folder), replaced(folder / NUMBERS) as file:
         file.write(json_text(search_document(found, written)).encode())
-    record = SuiteRecord(outcome, cases, [], title=_title(found), failing_changes=changes)
+    record = SuiteRecord(outcome, cases, (), False, (), _title(found), changes, tried(found))
     return write_suite_page(folder, record)
 
 
@@ -172,9 +184,8 @@ def _title(found: SearchResult) -> str:
     if not found.failures:
         return f"{name}: no failure in {counted(runs, 'run')}"
     failed = sum(each.result.outcome != "passed" for each in found.exploration.samples)
-    places = "1 step or expectation"
-    if len(found.failures) > 1:
-        places = f"{len(found.failures)} steps or expectations"
+    kinds = len(found.failures)
+    places = f"{kinds} steps or expectations" if kinds > 1 else "1 step or expectation"
     return f"{name}: {failed} of {counted(runs, 'run')} failed, in {places}"
 
 
@@ -186,9 +197,8 @@ def is_failing(found: SearchResult) -> bool:
 def _reported(written: WrittenFailure) -> CaseResult:
     """The run of a shrunk failure, with the name and the report of its scenario file."""
     name = written.file.name.removesuffix(SUFFIX)
-    report, page = written.result.report_dir, written.result.page
-    result = written.failure.nearest.result
-    return replace(result, case=name, report_dir=report, page=page)
+    own, result = written.result, written.failure.nearest.result
+    return replace(result, case=name, report_dir=own.report_dir, page=own.page)
 
 
 def search_document(found: SearchResult, written: Written) -> dict[str, object]:
@@ -214,10 +224,7 @@ def search_document(found: SearchResult, written: Written) -> dict[str, object]:
                 "runs": len(each.failure.samples),
                 "shrink_runs": each.failure.shrink_runs,
                 "values": found.space.values(each.failure.nearest.point),
-                "changed": [
-                    found.space.parameters[i].path
-                    for i in found.space.changed(each.failure.nearest.point)
-                ],
+                "changed": [each.path for each, _ in changed(found, each.failure.nearest)],
                 "distance": found.space.distance(each.failure.nearest.point),
                 "scenario": str(each.file),
                 "report": each.result.report_dir,

@@ -26,17 +26,24 @@ function choice(row, rows) {
   return element("div.compared", {}, "compare with ", list, place);
 }
 
-/** Cases of the same file come first, and of these the ones that passed. */
+/** Cases of the same file come first, then those that share most words of title, tags and folder; of equals the ones that passed. */
 function distance(row, other) {
-  return 2 * (row.file !== other.file) + (other.outcome !== "passed");
+  const words = ({ name, tags, folder }) => new Set([...tags, ...`${name} ${folder}`.toLowerCase().split(/[^\w-]+/).filter((word) => word.length > 3)]);
+  const [own, others] = [words(row), words(other)];
+  return (row.file === other.file ? 0 : 2 + 2 / (1 + [...own].filter((word) => others.has(word)).length)) + (other.outcome !== "passed") * 0.01;
 }
 
 /** A command for a shell, and a button that copies it. */
 function command(words) {
-  const text = words.map((word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`)).join(" ");
+  const code = element("code", {}, words.map((word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`)).join(" "));
+  return element("span.command", {}, code, copying(code));
+}
+
+/** @param {HTMLElement} code @returns {HTMLElement} a button that copies its text */
+export function copying(code) {
+  const text = code.textContent;
   const button = element("button.copy", { type: "button", "aria-label": `copy ${text}`, onclick: copy }, "copy");
-  const code = element("code", {}, text);
-  return element("span.command", {}, code, button);
+  return button;
 
   async function copy() {
     getSelection().selectAllChildren(code); // where the clipboard is refused, a key copies it

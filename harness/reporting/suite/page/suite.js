@@ -1,6 +1,7 @@
 // The page of a suite: its rows, what narrows them down, and the map of what varies.
 
 import { drawCampaign } from "./campaign.js";
+import { copying } from "./comparing.js";
 import { unpack } from "./payload.js";
 import { startQuery } from "./query.js";
 import { startTable } from "./table.js";
@@ -11,5 +12,6 @@ import { startTable } from "./table.js";
   const table = startTable(payload);
   startQuery(payload.run.rows, table.show);
   drawCampaign();
+  document.querySelectorAll("code[data-copy]").forEach((code) => code.after(copying(code)));
   document.documentElement.dataset.ready = "yes";
 })();

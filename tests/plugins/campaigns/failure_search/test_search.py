@@ -84,10 +84,25 @@ def test_a_thin_failure_is_found_shrunk_to_its_boundary_and_written_as_a_scenari
     assert list((tmp_path / failure["report"]).rglob("*.jpg"))
 
 
-def test_rows_of_a_search_offer_only_commands_that_run(tmp_path, visit):
-    search(tmp_path, TWO_KINDS, "--runs", "12", "--start", "12")
+def test_the_page_of_a_search_says_what_was_tried_and_each_command_runs(tmp_path, visit):
+    _, found = search(tmp_path, TWO_KINDS, "--runs", "12", "--start", "12")
     [page_file] = (tmp_path / "reports").rglob("index.html")
     page = visit(page_file).page
+    shrunk = sum(each["shrink_runs"] for each in found["failures"])
+    assert page.locator("#tried p").all_inner_texts() == [
+        "Varied: x (-0.5 to 0.5), y (-0.489 to 0.489), z (0.4 to 1.1).",
+        "12 runs, listed below: 12 spread evenly over the ranges.",
+        f"{shrunk} more runs found the smallest changes.",
+    ]
+    order = "[...document.querySelectorAll('main > section')].map((each) => each.id)"
+    assert page.evaluate(order)[:2] == ["changes", "tried"]
+    change = page.locator(".change").first
+    assert change.locator(".replay").count() == 2
+    assert change.locator(".moved > b").count() == 1, "where the value stands in its range"
+    again = change.locator("[data-copy]").inner_text()
+    assert again == f"harness run {found['failures'][0]['scenario']}"
+    assert change.locator(f"button[aria-label='copy {again}']").is_visible()
+    assert main([*again.split()[1:], "--no-report"]) == 1
     assert page.locator("tr.case").count() == 12
     said = page.inner_text("#map output")
     assert said.endswith("shows the row of one without a report; no run of a search has one.")
