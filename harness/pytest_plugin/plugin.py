@@ -29,12 +29,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--harness-report-dir",
         metavar="DIR",
-        default=None,
         help="folder for scenario reports (default: the ini key harness_report_dir, else reports)",
     )
-    group.addoption(
-        "--harness-no-report", action="store_true", default=False, help="do not write reports"
-    )
+    group.addoption("--harness-no-report", action="store_true", help="do not write reports")
     group.addoption(
         "--harness-reporter",
         metavar="NAME",
@@ -46,19 +43,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--harness-history",
         metavar="DIR",
-        default=None,
         help="folder of earlier results.json files; the suite page shows their margins",
     )
     group.addoption(
         "--harness-in-process",
         action="store_true",
-        default=False,
         help="run scenarios inside the pytest process, so that a debugger can attach",
     )
     group.addoption(
         "--harness-strict",
         action="store_true",
-        default=False,
         help="fail scenarios where a verdict has a warning, such as `already true at the start`",
     )
     group.addoption(
@@ -75,9 +69,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=[],
         help="a command that scenarios may start as a ROS 2 node (see the ini key harness_nodes)",
     )
-    parser.addini(
-        "harness_nodes", "commands that scenarios may start as ROS 2 nodes", type="linelist"
-    )
+    parser.addini("harness_nodes", "commands of ROS 2 nodes in scenarios", type="linelist")
     parser.addini("harness_plugins", "modules that provide plug-ins for scenarios", type="args")
     parser.addini(
         "harness_files",
@@ -234,6 +226,18 @@ class SessionResults:
             except HarnessError as error:
                 self._lines.append(str(error))
         self._lines = [*map(terminal_text, self._lines), *map(printable, remarks)]
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_html_results_summary(self, prefix: list[str]) -> None:
+        """Let the report of pytest-html begin with what failed, in colours that can be read."""
+        if self.records:
+            from harness.pytest_plugin.html_report import head
+            from harness.pytest_plugin.session_files import from_plains
+
+            cases = [case for each in from_plains([*self.records.values()]) for case in each.cases]
+            page = Path(report_root(self._config) or "", "index.html")
+            target = Path(self._config.getoption("htmlpath")).resolve()
+            prefix.append(head(cases, target.parent, page))
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._lines:

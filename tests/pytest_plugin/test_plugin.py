@@ -4,12 +4,14 @@ import os
 import re
 import subprocess
 import sys
+from contextlib import closing
 from xml.etree import ElementTree
 
 import numpy as np  # noqa: F401
 import pytest
 
 import harness.language.files.yaml_file  # noqa: F401
+from tests.reporting.browser import new_context
 
 # pytester forgets modules that are new in its runs, and native ones come once only
 
@@ -226,7 +228,9 @@ def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
     assert (pytester.path / "reports/tests/test_holds-1/run.json").is_file()
 
 
-def test_a_row_of_pytest_html_has_the_margin_the_picture_and_the_page(pytester, write):
+def test_pytest_html_begins_with_causes_and_its_rows_have_margin_picture_and_page(
+    pytester, write, browser
+):
     write(holds=HOLDS, fails=FAILS)
     pytester.makepyfile(
         """
@@ -248,6 +252,18 @@ def test_a_row_of_pytest_html_has_the_margin_the_picture_and_the_page(pytester, 
     assert "fails.scenario.yaml:8: duration is at" in failed["log"]
     assert "CaseResult(" not in failed["log"]
     assert "fails.scenario.yaml:8: duration is at" in rows["test_by_hand"]["log"]
+    with closing(new_context(browser, offline=True)) as context:
+        opened = context.new_page()
+        opened.goto((pytester.path / "out/report.html").as_uri())
+        first = opened.locator(".scenarios")
+        assert first.locator("b").first.inner_text() == "1 of 2 scenarios passed"
+        assert "Too short: duration is at" in first.inner_text()
+        assert first.get_by_text("all scenarios").get_attribute("href") == "../reports/index.html"
+        looks = opened.locator("#results-table td, .scenarios").evaluate_all(
+            "(all) => all.map(getComputedStyle).map((each) => [each.fontSize, each.color])"
+        )
+        assert ["14px", "rgb(27, 32, 39)"] in looks
+        assert all(float(size.removesuffix("px")) >= 13 for size, _ in looks)
 
 
 @pytest.mark.nightly
