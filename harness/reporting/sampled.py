@@ -96,10 +96,11 @@ def with_starts(rate: SuccessRate, starts: Sequence[tuple[bool, int]]) -> Succes
 
 
 def missed(rates: Sequence[SampledRate]) -> str:
-    """`1 of 4 success rates not confirmed`, which fails a suite; empty where none is missed."""
+    """`2 of 4 success rates not confirmed`, which fails a suite; empty where none is missed."""
     required = [each for each in rates if each.rate.at_least is not None or each.rate.is_one_run]
     unconfirmed = sum(each.outcome != "passed" for each in required)
-    return f"{unconfirmed} of {len(required)} success rates not confirmed" if unconfirmed else ""
+    text = f"{unconfirmed} of {len(required)} success rates" if required[1:] else "success rate"
+    return f"{text} not confirmed" if unconfirmed else ""
 
 
 def rate_line(name: str, rate: SuccessRate, style: Style = PLAIN) -> str:

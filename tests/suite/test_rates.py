@@ -98,7 +98,12 @@ def test_a_rate_that_is_not_required_is_not_counted_as_unconfirmed(outcomes):
     assert missed([free]) == ""
     assert "no rate is required (`expect_rate`), so every one must pass" in rate_text("a", rate)
     both = missed([free, SampledRate("b.yaml", "", required, "failed")])
-    assert both == "1 of 1 success rates not confirmed"
+    assert both == "success rate not confirmed"
+    four = [
+        SampledRate(f"{i}.yaml", "", required, "failed" if i < 2 else "passed") for i in range(4)
+    ]
+    assert missed(four) == "2 of 4 success rates not confirmed"
+    assert missed(four[1:]) == "1 of 3 success rates not confirmed"
 
 
 @pytest.mark.parametrize("required", [0.5, 0.8, 0.9])

@@ -148,6 +148,24 @@ def test_the_parameter_that_decides_is_named_alone():
     assert found.conclusion == "friction (lower in failed runs) explains these failures."
 
 
+def with_failures(count):
+    """Forty runs whose lowest frictions fail, with a parameter that does not matter."""
+    rng = random.Random(1)
+    rows = [{"friction": i / 40, "x": rng.random()} for i in range(40)]
+    return [SuiteCase(failed(i) if i < count else passed(i), row) for i, row in enumerate(rows)]
+
+
+@pytest.mark.parametrize("count", [2, 3, 10])
+def test_what_fewer_than_three_failures_show_is_called_a_lead(count, tmp_path):
+    cases = with_failures(count)
+    [found] = sensitivities(Columns(cases))
+    doubt = ": a lead, as fewer than 3 runs failed; draw more" if count < 3 else ""
+    assert found.conclusion == f"friction (lower in failed runs) explains these failures{doubt}."
+    text = write_suite_page(tmp_path, SuiteRecord("failed", cases)).read_text()
+    assert found.conclusion in text
+    assert "corrects it for the number of parameters" in text
+
+
 def test_the_map_begins_with_what_explains_most():
     cases = [
         replace(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -191,7 +191,8 @@ def _margins(columns: Columns) -> tuple[list[Histogram], list[str]]:
     chosen = {key: each for key, each in found.items() if np.ptp(each) > 0 or each.min() < 0}
     failed = {key[0] for key, values in found.items() if values.min() < 0}
     failed |= columns.without_margin.keys()
-    keys = sorted(chosen, key=lambda key: (key[0] not in failed, _first(found, key[0])))
+    order = [expectation for expectation, _ in found]  # its units stand next to each other
+    keys = sorted(chosen, key=lambda key: (key[0] not in failed, order.index(key[0])))
     more = len(keys) - MOST_HISTOGRAMS
     remarks = [f"{more} more expectations"] if more > 0 else []
     remarks += [
@@ -199,11 +200,6 @@ def _margins(columns: Columns) -> tuple[list[Histogram], list[str]]:
         for expectation, count in columns.without_margin.most_common(MOST_HISTOGRAMS)
     ]
     return [_histogram(*key, chosen[key]) for key in keys[:MOST_HISTOGRAMS]], remarks
-
-
-def _first(keys: Iterable[tuple[str, str]], expectation: str) -> int:
-    """The place of an expectation, so that its units stand next to each other."""
-    return next(place for place, key in enumerate(keys) if key[0] == expectation)
 
 
 def _histogram(expectation: str, unit: str, values: FloatArray) -> Histogram:

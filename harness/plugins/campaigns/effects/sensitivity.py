@@ -13,6 +13,7 @@ from harness.core.types import FloatArray, IntArray
 from harness.reporting.suite.columns import Columns, VariedQuantity
 
 FEWEST_RUNS = 8  # with fewer runs no effect can be shown
+FEWEST_FAILURES = 3  # with fewer, what is named may be one coincidence
 LEVEL = 0.05  # chance of such an effect of any parameter below which one is named
 RESHUFFLES = 1999  # permutations of a test: they resolve a hundredth of `LEVEL`
 NEGLIGIBLE = 0.05  # of the limit: margins that differ by less are a flat curve
@@ -95,7 +96,9 @@ class FileSensitivity:
             return f"The margins are {' and '.join(each.dependence for each in found)}."
         shown = [f"{each.path} ({each.words})" for each in found]
         verb = "explains" if len(shown) == 1 else "explain"
-        return f"{' and '.join(shown)} {verb} {what}."
+        few = self.failures < FEWEST_FAILURES
+        doubt = f": a lead, as fewer than {FEWEST_FAILURES} runs failed; draw more" if few else ""
+        return f"{' and '.join(shown)} {verb} {what}{doubt}."
 
 
 def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
