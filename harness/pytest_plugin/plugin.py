@@ -236,7 +236,7 @@ class SessionResults:
 
             cases = [case for each in from_plains([*self.records.values()]) for case in each.cases]
             page = Path(report_root(self._config) or "", "index.html")
-            target = Path(self._config.getoption("htmlpath")).resolve()
+            target = Path(self._config.getoption("htmlpath") or "").resolve()
             prefix.append(head(cases, target.parent, page))
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:

@@ -51,7 +51,7 @@ def names(page):
 def test_it_lists_everything_and_hostile_names_stay_text(small, visit):
     seen = visit(small)
     page = seen.page
-    assert page.title() == "1 of 5 passed; 1 of 1 success rates not confirmed"
+    assert page.title() == "1 of 5 passed; success rate not confirmed"
     assert page.locator("tr.case").count() == 5
     assert "<script>document.title" in seen.text("tbody")
     assert "8 of 10 samples passed, 80.0%" in seen.text("main")
@@ -110,6 +110,43 @@ def test_a_failure_shows_the_picture_of_the_moment_that_decided_it(tmp_path, vis
         " return pen.getImageData(20, 20, 1, 1).data[0]; }"
     )
     assert shade > 200, "the second step, in which it was decided"
+
+
+def test_a_passed_case_shows_the_picture_of_its_end(tmp_path, visit):
+    folder = tmp_path / "a/pick/c0"
+    (folder / "images").mkdir(parents=True)
+    for name in ("01-home", "02-pick"):
+        cv2.imwrite(str(folder / f"images/{name}.jpg"), np.zeros((48, 64, 3), np.uint8))
+    result = replace(passed(0), report_dir=str(folder))
+    page = visit(write_suite(tmp_path, SuiteRecord("passed", [SuiteCase(result)]), 0)[0]).page
+    assert page.locator(".still img").get_attribute("alt") == "the end: Pick [c0]"
+    assert page.locator(".still img").is_visible()
+
+
+def test_rows_with_one_title_are_distinguished_and_link_back_from_their_runs(tmp_path, visit):
+    folder = tmp_path / "b/place"
+    here = replace(STUCK, report_dir=str(folder), page=str(folder / "report.html"))
+    others = [replace(passed(0), file=f"{name}.scenario.yaml", case="") for name in ("one", "two")]
+    cases = [SuiteCase(each) for each in (here, *others)]
+    page = visit(write_suite(tmp_path, SuiteRecord("failed", cases), 1)[0]).page
+    titles = [each.strip() for each in page.locator("span.title").all_inner_texts()]
+    assert titles == ["Place", "Pick · one", "Pick · two"]
+    link = page.locator("tr.case a").first.get_attribute("href")
+    assert link == "b/place/report.html#t=4.00&tab=planner&suite=../../index.html"
+
+
+@pytest.mark.parametrize(
+    ("suite", "shown"),
+    [("../../index.html", True), ("javascript:alert(1)", False), ("http://a.b/index.html", False)],
+)
+def test_a_run_leads_back_to_its_suite_and_nowhere_else(failed_run, suite, shown, visit):
+    page = visit(failed_run / "report.html", f"#t=0.10&suite={suite}").page
+    back = page.locator("#suite")
+    assert back.is_visible() == shown
+    assert (back.get_attribute("href") == suite) == shown
+    page.keyboard.press("End")
+    wait_for(page, "!location.hash.includes('t=0.10')")
+    assert (suite in page.url) == shown
 
 
 def columns(page, row):

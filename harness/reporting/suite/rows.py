@@ -15,10 +15,10 @@ from harness.reporting.sampled import short_value
 from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.history import History
 from harness.reporting.suite.record import SuiteCase, link_from
-from harness.reporting.terminal import causes, failure_place
+from harness.reporting.terminal import causes
 
 NO_MARGIN = 9.0  # a share that sorts after every margin, which is 1 at most
-MOST_PICTURES = 100  # of failed cases; at 4 kB each, the page grows by less than 0.5 MB
+MOST_PICTURES = 100  # of cases, failures first; at 4 kB each, the page grows by less than 0.5 MB
 PICTURE_WIDTH = 200  # [pixels], twice what is shown, for screens of high density
 
 
@@ -56,7 +56,7 @@ def row_facts(
             {"name": Path(page).stem.replace("_", " "), "link": link_from(folder, page)}
             for page in result.further_pages
         ],
-        "link": case.link(folder) + (failure_place(result) if result.page else ""),
+        "link": case.address(folder),
         "share": case.share if math.isfinite(case.share) else NO_MARGIN,
         "used": used,
         "margin": stated_amount(nearest.margin, nearest.unit) if nearest else "",
@@ -74,8 +74,8 @@ def row_facts(
 
 
 def _picture(result: CaseResult, number: int, packer: Packer) -> str:
-    """The name of the buffer with a picture of the deciding moment; empty without one."""
-    if result.outcome != "failed" or len(packer.names) >= MOST_PICTURES:
+    """The name of the buffer with a picture of what failed, or of the end; empty without one."""
+    if result.outcome not in ("failed", "passed") or len(packer.names) >= MOST_PICTURES:
         return ""
     picture = deciding_picture(result, PICTURE_WIDTH)
     return packer.add(f"case.{number}", picture) if picture else ""

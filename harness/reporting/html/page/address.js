@@ -23,6 +23,12 @@ export function readAddress(hash) {
   return { time: numeric("t"), expect: index("expect"), step: index("step"), tab: values.get("tab") };
 }
 
+/** The page of the suite that a run was opened from, which its links name. @param {string} hash @returns {string} a relative address; empty for none */
+function suiteOf(hash) {
+  const suite = new URLSearchParams(hash.replace(/^#/, "")).get("suite") ?? "";
+  return /^(\.\.\/){1,20}index\.html$/.test(suite) ? suite : "";
+}
+
 const REST = 250; // [ms] without another time before the address shows it: a browser allows few changes a second
 
 /** Keeps the address at the time and the selection that the page shows, without new entries in the history. */
@@ -30,6 +36,10 @@ export class Address {
   /** @param {import("./clock.js").Clock} clock */
   constructor(clock) {
     this.clock = clock;
+    this.suite = suiteOf(location.hash);
+    const back = /** @type {HTMLAnchorElement} */ (document.getElementById("suite"));
+    back.hidden = !this.suite;
+    back.href = this.suite;
     /** @type {Record<string, string | number>} */
     this.place = {};
     let due = 0;
@@ -48,7 +58,7 @@ export class Address {
   }
 
   #write() {
-    const values = Object.entries({ t: this.clock.time.toFixed(2), ...this.place });
+    const values = Object.entries({ t: this.clock.time.toFixed(2), ...this.place, ...(this.suite && { suite: this.suite }) });
     const hash = `#${values.map(([name, value]) => `${name}=${value}`).join("&")}`;
     if (location.hash !== hash) history.replaceState(null, "", hash);
   }

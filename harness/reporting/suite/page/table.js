@@ -13,6 +13,10 @@ export function startTable(payload) {
   const more = document.querySelector("#cases .more"), columns = document.querySelectorAll("#cases thead th").length;
   const total = payload.run.rows.length, pictures = new Map();
   const isOneFile = total > 1 && payload.run.rows.every(({ file, case: name, tags }) => name && file === payload.run.rows[0].file && String(tags) === String(payload.run.rows[0].tags));
+  const titles = new Map();
+  for (const { name } of payload.run.rows) titles.set(name, (titles.get(name) ?? 0) + 1);
+  /** The title; where others have the same, with the name of its case or file. */
+  const titled = (row) => (titles.get(row.name) > 1 ? `${row.name} · ${row.case || row.file.split("/").at(-1).replace(".scenario.yaml", "")}` : row.name);
   let waiting = [], folded = new Set();
 
   /** The address of a row's picture, which is made once. */
@@ -53,12 +57,13 @@ export function startTable(payload) {
   }
 
   function caseRow(row) {
-    const shown = isOneFile ? row.case : row.name; // the title, the file and its tags are the same in every row
-    const name = row.link ? element("a", { href: row.link }, shown) : shown;
-    const still = row.picture && element("img", { src: picture(row.picture), alt: `the moment that decided ${row.name}`, loading: "lazy" });
+    const shown = isOneFile ? row.case : titled(row); // the title, the file and its tags are the same in every row
+    const link = row.link && withSuite(row.link);
+    const name = link ? element("a", { href: link }, shown) : shown;
+    const still = row.picture && element("img", { src: picture(row.picture), alt: `${row.outcome === "passed" ? "the end" : "the moment that decided"}: ${row.name}`, loading: "lazy" });
     const made = element(`tr.case`, { "data-outcome": row.outcome, "data-share": row.share },
       element("td", {}, element(`i.sign.${row.outcome}`), element(row.outcome === "passed" ? "span.hidden" : "span.quiet", {}, row.outcome)),
-      element("td.still", {}, row.link && still ? element("a", { href: row.link, tabindex: -1 }, still) : still),
+      element("td.still", {}, link && still ? element("a", { href: link, tabindex: -1 }, still) : still),
       element("td.about", {},
         element("span.title", {}, name, ...(isOneFile ? [] : row.tags).map((tag) => element("span.tag", {}, tag))),
         element("div.quiet", {}, ...(isOneFile ? [] : breakable(row.file)), ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
@@ -84,6 +89,13 @@ export function startTable(payload) {
   return { show: watched(more, extend, show) };
 }
 
+
+/** The address of a run's page, which has a link back to this one. */
+function withSuite(link) {
+  const [path, place] = link.split("#"), depth = path.split("/").length - 1;
+  if (!depth || path.startsWith("..") || !path.endsWith("report.html")) return link;
+  return `${path}#${place ? `${place}&` : ""}suite=${"../".repeat(depth)}index.html`;
+}
 
 /** A path that breaks after its folders. */
 function breakable(path) {
