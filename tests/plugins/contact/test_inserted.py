@@ -68,6 +68,23 @@ def test_a_hole_stays_a_hole_down_to_a_tenth_of_a_millimetre(tmp_path, hole, peg
 
 
 @pytest.mark.parametrize(
+    ("hole", "peg", "length"),
+    [
+        (ROUND, "cylinder: {radius: 10 mm, length: 15 mm}", 15),
+        ("{size: [20.4 mm, 20.4 mm], depth: 40 mm}", "box: {size: [20 mm, 20 mm, 20 mm]}", 20),
+        ("{size: [20.4 mm, 30.4 mm], depth: 40 mm}", "box: {size: [20 mm, 30 mm, 30 mm]}", 30),
+        ("{size: [30.4 mm, 30.4 mm], depth: 40 mm}", "box: {size: [30 mm, 30 mm, 10 mm]}", 10),
+    ],
+)
+def test_a_peg_that_is_no_longer_than_thick_is_in_its_hole(tmp_path, hole, peg, length):
+    at = f"[0.5, 0.1, {0.0505 + length / 2000}]"
+    result = run_of(tmp_path, hole, f"friction: 0.01, {peg}", at)
+    assert result, str(result)
+    next_to = run_of(tmp_path, hole, peg, f"[0.56, 0.1, {length / 2000}]", wait=0.1)
+    assert "mm from the axis of the hole" in str(next_to)
+
+
+@pytest.mark.parametrize(
     ("hole", "peg", "at", "said"),
     [
         (ROUND, "cylinder: {radius: 10.15 mm, length: 80 mm}", ABOVE, "deep in the hole"),

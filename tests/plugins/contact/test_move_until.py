@@ -75,6 +75,32 @@ def test_a_move_that_meets_nothing_fails_with_the_largest_force(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("limit", "tare", "said"),
+    [
+        ("force: {:.3f}", "", "before the move begins: `tare` it"),
+        ("torque: {:.4f}", "", "before the move begins: `tare` it"),
+        ("force: {:.3f}", "tare: wrist", "nothing pressed the robot with"),
+        ("torque: {:.4f}", "tare: wrist", "no torque reached"),
+    ],
+)
+def test_the_weight_of_the_tool_is_nothing_that_was_met(tmp_path, limit, tare, said):
+    """The limit is half of what the quill's 1 kg is at the sensor; it goes up through empty air."""
+    half = 0.5 * 9.8 * (0.1 if "torque" in limit else 1.0)
+    sensor = "wrench_sensors: {wrist: {link: quill, xyz: [10 cm, 0, 0]}}}"
+    move = f"{limit.format(half)}, sensor: wrist, max_distance: 2 cm, speed: 1 cm/s"
+    text = SCENARIO % (-0.2, move)
+    text = text.replace("tcp_link: tip}", f"tcp_link: tip, {sensor}").replace("0, -1]", "0, 1]")
+    if tare:
+        text = text.replace("  - allow_collisions", f"  - {tare}\n  - allow_collisions")
+    (tmp_path / "gantry.xml").write_text(GANTRY, encoding="utf-8")
+    file = tmp_path / "touch.scenario.yaml"
+    file.write_text(text, encoding="utf-8")
+    result = harness.run(file)
+    assert result.step("down").error_code == "CONTROL_FAILED"
+    assert said in str(result)
+
+
+@pytest.mark.parametrize(
     ("words", "said"),
     [
         ("max_distance: 5 cm", "`force`, `torque` and `contact`"),

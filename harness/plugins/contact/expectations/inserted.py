@@ -25,17 +25,18 @@ from harness.recording.verdict import Measure, Verdict, VerdictWarning
 
 DEPTH = Quantity("depth in the hole", "m", "at least `depth`")
 PRESSED = 1e-3  # [m], more than a peg sinks into the bottom of its hole
+ALIKE = 0.99  # the share of an extent by which another one is as large
 OFFSET = Quantity("offset from the hole's axis", "m", "at most `tolerance`")
 
 
 class Inserted(Predicate):
     """A peg is in a hole, at least as deep as required.
 
-    The axis of the peg is that of its longest extent, through the middle of its shapes. Its lower
-    end must be below the opening, along the hole's axis, by the depth; and as far as the peg is
-    below the opening, its axis must be near the hole's. A peg that stands next to its hole, or on
-    its rim, is not inserted, and neither is one that fell through it. Where the peg is, is measured
-    in the physics.
+    The axis of the peg is that of its longest extent, or the one across which it is as wide as it
+    is thick, through the middle of its shapes. Its lower end must be below the opening, along the
+    hole's axis, by the depth; and as far as the peg is below the opening, its axis must be near the
+    hole's. A peg that stands next to its hole, or on its rim, is not inserted, and neither is one
+    that fell through it. Where the peg is, is measured in the physics.
     """
 
     subject = "peg"
@@ -70,8 +71,7 @@ class Inserted(Predicate):
                 "a hole is a key of a box: `box: {size: [...], hole: {diameter: 20 mm}}`",
                 needs=("world",),
             )
-        elif self.depth > max(hole.depth for hole in block.holes):
-            deepest = max(hole.depth for hole in block.holes)
+        elif self.depth > (deepest := max(hole.depth for hole in block.holes)):
             scope.problems.add(
                 at.key("depth"),
                 f"the hole is {1e3 * deepest:g} mm deep, {1e3 * self.depth:g} mm are required",
@@ -88,10 +88,9 @@ class Inserted(Predicate):
         record = object_record(run, self.hole)
         if not record.holes:
             raise NotObservable(f"'{self.hole}' has no hole in this run")
-        ends = _ends(object_record(run, self.peg))
-        peg = window.cut(physical_poses(run, self.peg))
-        block = window.cut(physical_poses(run, self.hole))
-        found = [_in_hole(ends, peg, block, hole) for hole in record.holes]
+        axes = _axes(object_record(run, self.peg))
+        peg, block = (window.cut(physical_poses(run, name)) for name in (self.peg, self.hole))
+        found = [_in_hole(ends, peg, block, hole) for hole in record.holes for ends in axes]
         offsets = np.stack([offset for _, offset in found])
         nearest = offsets.argmin(axis=0)
         rows = np.arange(len(nearest))
@@ -120,26 +119,26 @@ class Inserted(Predicate):
 
 def _welded(run: Run, name: str) -> tuple[VerdictWarning, ...]:
     """A warning where a weld carries the peg at the end, so that nothing shows that it stays."""
-    if "attachments" in run.unrecorded:
-        return ()
-    last = run.signals.times[-1]
-    held = [each for each in run.attachments if each.represents == name and each.welded]
-    if not any(each.welded is not None and each.welded[1] > last for each in held):
+    last, records = run.signals.times[-1], run.attachments
+    held = [each.welded for each in records if each.represents == name and each.welded]
+    if "attachments" in run.unrecorded or not any(end > last for _, end in held):
         return ()
     message = f"{name} is welded to the hand: whether it stays in the hole is not shown"
     return (VerdictWarning("held by a weld", message),)
 
 
-def _ends(record: ObjectRecord) -> FloatArray:
-    """The two ends of the axis of an object's longest extent, in its frame, shape (2, 3) [m]."""
-    corners = np.concatenate(
-        [shape.pose.apply(_corners(shape.geometry)) for shape in record.shapes]
-    )
+def _axes(record: ObjectRecord) -> list[FloatArray]:
+    """The two ends of each axis that may be a peg's, in its frame, shape (2, 3) each [m]."""
+    corners = np.concatenate([each.pose.apply(_corners(each.geometry)) for each in record.shapes])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    axis = int(np.argmax(high - low))
-    ends = np.tile((low + high) / 2, (2, 1))
-    ends[:, axis] = low[axis], high[axis]
-    return ends
+    axes: list[FloatArray] = []
+    for axis, extent in enumerate(high - low):
+        others = np.delete(high - low, axis)
+        if max(extent / np.max(high - low), others.min() / others.max()) > ALIKE:
+            ends = np.tile((low + high) / 2, (2, 1))
+            ends[:, axis] = low[axis], high[axis]
+            axes.append(ends)
+    return axes
 
 
 def _corners(geometry: object) -> FloatArray:

@@ -26,6 +26,7 @@ from harness.ports.motion_planning import MotionRequest
 from harness.ports.motions import CartesianLimits, RelativeMotion
 
 TOUCH = 0.1  # [N], the weight of 10 g: what `contact` notices
+MISSED = {"N": ("nothing pressed the robot with", "force"), "N m": ("no torque reached", "torque")}
 
 
 @dataclass(frozen=True)
@@ -51,11 +52,11 @@ class MoveUntil(Step):
     Every 4 ms the force is compared with the limit: the sum of the normal forces with which the
     robot, and what it holds, presses other bodies, as its mean over these 4 ms. With `sensor` it is
     the magnitude of the force that a sensor of force and torque reads, and with `torque` that of
-    its torque; a sensor also reads the weight of what it carries, unless `tare` came before. Then
-    the arm stops along its line, as fast as its joints' acceleration limits times the scaling
-    factor allow, and stays there. The step reports the distance, the force that it noticed and the
-    force when it stood. It fails when nothing is met within `max_distance`. What it may meet has to
-    be allowed, by `allow_collisions` around it.
+    its torque; a sensor also reads the weight of what it carries, unless `tare` came before, and
+    one that reads as much before the move begins fails the step. Then the arm stops along its line,
+    as fast as its joints' acceleration limits times the scaling factor allow, and stays there. The
+    step reports the distance, the force that it noticed and the force when it stood. It fails when
+    nothing is met within `max_distance`. What it may meet `allow_collisions` has to allow.
     """
 
     verb: ClassVar[str] = "move_until"
@@ -149,8 +150,11 @@ class MoveUntil(Step):
             The trajectory that was commanded, up to the stop.
 
         Raises:
-            StepFailed: CONTROL_FAILED; the force was not met.
+            StepFailed: CONTROL_FAILED; the force was not met, or read before anything moved.
         """
+        if (self.sensor or self.torque) and (before := self._read(cell)) >= self._limit:
+            reads = f"the sensor reads {before:.2g} {self._unit} before the move begins"
+            raise StepFailed("CONTROL_FAILED", f"{reads}: `tare` it, or state more")
         forces: list[float] = []
 
         def notices() -> bool:
@@ -159,12 +163,11 @@ class MoveUntil(Step):
 
         stopped = follow_until(planned, cell, notices)
         if stopped is None:
-            met = "nothing pressed the robot with" if self._unit == "N" else "no torque reached"
+            met, kind = MISSED[self._unit]
             raise StepFailed(
                 "CONTROL_FAILED",
                 f"{met} {self._limit:g} {self._unit} within {1e3 * self.max_distance:g} mm; the"
-                f" largest {'force' if self._unit == 'N' else 'torque'} was {max(forces):.2g}"
-                f" {self._unit}",
+                f" largest {kind} was {max(forces):.2g} {self._unit}",
             )
         followed, braking = stopped
         link = self.link or cell.description.tcp_link
