@@ -194,6 +194,14 @@ def test_an_escape_has_no_value(tmp_path, expression):
     refused(tmp_path, f"${{{expression}}}")
 
 
+@pytest.mark.parametrize("expression", ["'\\x00'", "'\\ud800'", "'\\x1b[2J'", "['\\uffff'][0]"])
+def test_a_character_that_no_xml_file_has_is_located(tmp_path, expression):
+    """Neither a reader of URDF nor a terminal can take it."""
+    assert "XML has no character U+" in refused(tmp_path, f"a${{{expression}}}")
+    content = '<xacro:macro name="m" params="v"><a b="${v}"/></xacro:macro>'
+    refused(tmp_path, "b", f'{content}<xacro:m v="${{{expression}}}"/>')
+
+
 @pytest.mark.parametrize("expression", ["().__class__", "__import__('os'", "math.__loader__"])
 def test_an_escape_in_a_substitution_has_no_value(tmp_path, expression):
     refused(tmp_path, f"$(eval {expression})")

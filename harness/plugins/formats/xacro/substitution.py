@@ -21,6 +21,7 @@ PIECE = re.compile(
 FIND = re.compile(r"\$\(find +([^ )]+) *\)")
 COMMANDS = "$(arg NAME), $(find PACKAGE), $(optenv NAME DEFAULT) and $(eval EXPRESSION)"
 EVAL = ("list", "dict", "map", "str", "float", "int")
+NOT_IN_XML = re.compile(r"[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 class Substitution:
@@ -110,7 +111,9 @@ class Substitution:
             self._budget.weigh(value)
         except TypeError as error:
             raise ExpressionError(str(error)) from error
-        return str(value)
+        if found := NOT_IN_XML.search(text := str(value)):
+            raise ExpressionError(f"XML has no character U+{ord(found[0]):04X}")
+        return text
 
     def _command(self, command: str) -> str:
         if command.startswith("eval "):

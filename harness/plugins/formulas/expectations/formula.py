@@ -44,6 +44,8 @@ RANGES: dict[str, Callable[[Joint], tuple[float, float]]] = {
     "effort": lambda joint: (-joint.effort, joint.effort),
 }
 """The smallest and the largest value of a joint's signals, by their names."""
+ROOM = 1.0
+"""A number further beyond a joint's limits, as a share of their distance, has another unit."""
 FORCES = ("force", "torque")
 UNITS_HINT = "angles without a unit are in radians, lengths in metres"
 LARGEST_CUTOFF = 2.0  # [m]; distances are recorded up to here, whatever is compared
@@ -132,11 +134,15 @@ def _unbreakable(comparison: Comparison, robot: RobotDescription) -> tuple[str, 
         return f"`{comparison.text}` reads no signal of the run", "name one, such as `z(box)`"
 
     def range_here(signal: Signal) -> tuple[float, float]:
-        """Motors give at most their effort limit."""
+        """The range of a signal: of a joint with room for numbers of its unit, but of efforts."""
         joint = robot.joint_by_name.get(signal.arguments[0]) if signal.arguments else None
-        if signal.name == "effort" and joint is not None and joint.effort > 0:
-            return RANGES["effort"](joint)
-        return range_of_signal(signal)
+        if joint is None or signal.name not in RANGES:
+            return range_of_signal(signal)
+        low, high = RANGES[signal.name](joint)
+        if not low < high:
+            return range_of_signal(signal)
+        room = 0 if signal.name == "effort" else ROOM * (high - low)
+        return low - room, high + room
 
     holds = decided(comparison, range_here)
     if holds is None:
@@ -155,7 +161,7 @@ def _beyond_range(comparison: Comparison, robot: RobotDescription) -> tuple[str,
         if isinstance(signal, Signal) and isinstance(limit, Const) and signal.name in RANGES:
             joint = robot.joint_by_name.get(signal.arguments[0])
             low, high = (-np.inf, np.inf) if joint is None else RANGES[signal.name](joint)
-            if abs(limit.value - (low + high) / 2) > 1.5 * (high - low):
+            if abs(limit.value - (low + high) / 2) > (0.5 + ROOM) * (high - low):
                 text = f"{signal} is between {low:.3g} and {high:.3g}, never {limit.value:g}"
                 return text, UNITS_HINT
     return None
