@@ -125,16 +125,21 @@ def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
         seen[verdicts[0]] += 1
 
 
-@pytest.mark.nightly
-def test_a_bent_motion_is_judged_alike_and_its_first_blocked_state_is_found(stages, tmp_path):
+@pytest.mark.nightly(but=["40-4"])
+@pytest.mark.parametrize(("corners", "motions"), [(2, 30), (40, 4), (400, 20)])
+def test_a_bent_motion_is_judged_alike_and_its_first_blocked_state_is_found(
+    corners, motions, stages, tmp_path
+):
     cell = crowded(ur("ur3e"), tmp_path)
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
     start = space.part(cell.state)
     checker = MotionChecker(cell.scene, space, start, 0.002)
     generator = np.random.default_rng(3)
     found = []
-    for _ in range(30):
-        bends = np.vstack([start, start + generator.normal(0, 0.5, (2, 6))])
+    for _ in range(motions):
+        far = generator.normal(0, 0.5, 6)
+        bent = generator.normal(0, 1 / corners, (corners, 6))
+        bends = np.vstack([start, start + np.linspace(0, 1, corners)[:, None] * far + bent])
         motion = SampledMotion.of(bends, space.metric, 1 / 90)
         each = [place for place in range(motion.last + 1) if checker.touches(motion.state(place))]
         for when in ("never", "always"):

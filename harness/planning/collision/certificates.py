@@ -139,9 +139,9 @@ def _indices(array: Array) -> Array:
 def _working_memory(layout: _Layout, width: int) -> Arrays:
     """The memory of the compiled check that does not depend on the length of a motion."""
     bodies, pairs, deepest = len(layout.body_rows), len(layout.checks), layout.deepest
-    floats = ((width,), (width,), (width, 12), (bodies, 12), (bodies, 3), (bodies, 1 + deepest, 9))
+    joints, motions = ((width,), (2, width), (width, 12)), (bodies, 1 + deepest, 9)
     return (
-        *(np.zeros(shape) for shape in floats),
+        *(np.zeros(shape) for shape in (*joints, (bodies, 12), (bodies, 3), motions)),
         np.zeros((pairs, 3)),
         np.empty(bodies, dtype=np.int64),
         np.arange(max(MOST_LEFT, 2 * pairs), dtype=np.uint32),

@@ -31,7 +31,7 @@ typedef struct {
     const uint32_t (*checks)[4], *paths, *joints;
     Tree trees[2]; /* of the links, and of the objects */
     /* Working memory. */
-    double *here, *rates;
+    double *here, *rates, *strays;
     Transform *poses, *body_at;
     double (*middles)[3];
     BodyMotion *motions; /* (bodies, joints that carry a body + 1) */
@@ -55,6 +55,7 @@ static Check check_of(const Array *t) {
         .margins = t[MARGINS].data, .checks = t[CHECKS].data, .paths = t[PATHS].data,
         .joints = t[JOINTS].data, .trees = {tree_at(t + LINKS), tree_at(t + OBJECTS)},
         .here = t[HERE].data, .rates = t[RATES].data, .poses = t[POSES].data,
+        .strays = (double *)t[RATES].data + t[CORNERS].shape[1],
         .body_at = t[BODY_AT].data, .middles = t[MIDDLES].data, .motions = t[MOTIONS].data,
         .motion_rows = t[MOTIONS].shape[1], .axes = t[AXES].data,
         .body_stamp = t[BODY_STAMP].data, .left = t[LEFT].data,
@@ -80,31 +81,24 @@ static double joint_at(const Check *c, int64_t joint, int64_t segment, double st
     return *at + (at[c->width] - *at) / (begin[1] - *begin) * (state - *begin);
 }
 
-/* How far a joint moves from a value within an interval that has corners in it. */
-static double farthest(const Check *c, int64_t joint, double value, int64_t low, int64_t high) {
-    int64_t first = segment_of(c, low), final = segment_of(c, high);
-    double widest = largest_of(fabs(joint_at(c, joint, first, (double)low) - value),
-                               fabs(joint_at(c, joint, final, (double)high) - value));
-    for (int64_t k = first + 1; k <= final; ++k)
-        widest = largest_of(widest, fabs(c->corners[k * c->width + joint] - value));
-    return widest;
-}
-
-/* Write the joints' values at an interval's middle state, and how far they move to its ends.
-
-   Returns whether the interval is a straight line; rates have no sign where it is not. */
-static int sample_joints(const Check *c, int64_t low, int64_t high) {
-    int64_t middle = (low + high) / 2, k = segment_of(c, middle);
-    double begin = c->places[k], end = c->places[k + 1];
-    int is_straight = begin <= (double)low && (double)high <= end;
-    double reach = (double)(high - middle > middle - low ? high - middle : middle - low);
+/* Write the joints' values at an interval's middle state, how far they move to its end at the even
+   rate that joins its ends, and how far they stray from that at most: at an end or at a corner. */
+static void sample_joints(const Check *c, int64_t low, int64_t high) {
+    int64_t first = segment_of(c, low), final = segment_of(c, high), middle = (low + high) / 2;
+    int64_t k = segment_of(c, middle);
     for (int64_t m = 0; m < c->width; ++m) {
-        double at = c->corners[k * c->width + m];
-        double rate = (c->corners[(k + 1) * c->width + m] - at) / (end - begin);
-        c->here[m] = at + rate * ((double)middle - begin);
-        c->rates[m] = is_straight ? rate * reach : farthest(c, m, c->here[m], low, high);
+        double here = joint_at(c, m, k, (double)middle), begin = joint_at(c, m, first, (double)low);
+        double way = joint_at(c, m, final, (double)high) - begin, stray = 0.0;
+        double rate = high > low ? way / (double)(high - low) : 0.0;
+        if (final > first) stray = fabs(begin - here + rate * (double)(middle - low));
+        for (int64_t corner = first + 1; corner <= final; ++corner) {
+            double away = c->corners[corner * c->width + m] - here;
+            stray = largest_of(stray, fabs(away - rate * (c->places[corner] - (double)middle)));
+        }
+        c->here[m] = here;
+        c->rates[m] = rate * (double)(high - middle);
+        c->strays[m] = stray;
     }
-    return is_straight;
 }
 
 /* Place a body at the interval's middle state, and bound its motion where there is one. */
@@ -116,7 +110,7 @@ static void place_body(const Check *c, uint32_t body, int moves) {
         copy(c->body_poses[body], c->body_at[body], 12);
     apply(c->body_at[body], c->balls[body], c->middles[body]);
     if (moves)
-        body_motion(c->rates, c->joints + c->paths[body], c->joints + c->paths[body + 1], c->chain,
+        body_motion(c->rates, c->strays, c->joints + c->paths[body], c->joints + c->paths[body + 1], c->chain,
                     (const Transform *)c->poses, c->middles[body], c->balls[body][3],
                     c->motions + body * c->motion_rows);
 }
@@ -140,7 +134,7 @@ static double box_gap(const double *point, const double *base, const double *box
 
    The balls of the bodies are compared first, then the ball of each with the box of the other, and
    then their trees. */
-static int compare_bodies(const Check *c, uint32_t pair, int is_straight, int moves) {
+static int compare_bodies(const Check *c, uint32_t pair, int moves) {
     const uint32_t *row = c->checks[pair];
     uint32_t ends[2] = {row[0], row[1]};
     double free = c->margins[pair][0], blocked = c->margins[pair][1], moved = 0.0;
@@ -164,7 +158,7 @@ static int compare_bodies(const Check *c, uint32_t pair, int is_straight, int mo
     const double *base = c->body_at[ends[1]];
     PairMotion motion;
     if (moves) {
-        pair_motion(near, far, is_straight, base, &motion);
+        pair_motion(near, far, base, &motion);
         for (int side = 0; side < 2; ++side) {
             double local[3];
             if (excess[side] <= 0.0) continue;
@@ -207,7 +201,7 @@ int64_t certify(const Array *table, int64_t low, int64_t high) {
         Interval interval = queue[head];
         int64_t stamp = head++, middle = (interval.low + interval.high) / 2;
         int moves = interval.high > interval.low;
-        int is_straight = sample_joints(c, interval.low, interval.high);
+        sample_joints(c, interval.low, interval.high);
         joint_poses(c->here, c->parent, c->chain, c->width, c->poses);
 
         /* The pairs that are not certified are listed for the halves, while there is room. */
@@ -222,7 +216,7 @@ int64_t certify(const Array *table, int64_t low, int64_t high) {
                 place_body(c, body, moves);
                 c->body_stamp[body] = stamp;
             }
-            int answer = compare_bodies(c, pair, is_straight, moves);
+            int answer = compare_bodies(c, pair, moves);
             if (answer == FREE) continue;
             if (answer == BLOCKED) {
                 move_to_front(c->left, pair);

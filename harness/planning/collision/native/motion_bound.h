@@ -12,7 +12,7 @@ typedef struct {
     double centre[3];   /* first-order motion of the centre [m] */
     double rotation[3]; /* rotation vector [rad] */
     double radius;
-    double second;      /* a bound of the second-order motion of its points [m] */
+    double second;      /* a bound of all other motion of its points: second order, strays [m] */
     double all;         /* a bound of all motion of its points [m] */
 } BodyMotion;
 
@@ -21,7 +21,7 @@ typedef struct {
     double centres[3];      /* first-order motion of one centre relative to the other [m] */
     double rotations[2][3]; /* rotation vectors [rad] */
     double radii[2];
-    double second;          /* a bound of the second-order motion [m] */
+    double second;          /* a bound of all other motion [m] */
     double all;             /* a bound of all motion [m] */
 } PairMotion;
 
@@ -50,17 +50,18 @@ static void joint_poses(const double *values, const int64_t *parent, const Joint
     }
 }
 
-/* How a ball moves when the joints from `path` to `end`, listed tip first, move by their rates.
+/* How a ball moves when the joints from `path` to `end`, listed tip first, move by their rates and
+   stray from that.
 
    `out` has an entry for each number of joints from the tip on that move; the first one, of none,
    is zero. */
-static void body_motion(const double *rates, const uint32_t *path, const uint32_t *end,
-                        const Joint *chain, const Transform *poses, const double *centre,
-                        double radius, BodyMotion *out) {
+static void body_motion(const double *rates, const double *strays, const uint32_t *path,
+                        const uint32_t *end, const Joint *chain, const Transform *poses,
+                        const double *centre, double radius, BodyMotion *out) {
     double moved = 0.0, distal = 0.0, second = 0.0;
     double centre_motion[3] = {0.0, 0.0, 0.0}, rotation[3] = {0.0, 0.0, 0.0};
     for (; path < end; ++path) {
-        double rate = rates[*path], w = fabs(rate);
+        double rate = rates[*path], stray = strays[*path], w = fabs(rate) + stray;
         const double *pose = poses[*path];
         double axis[3];
         rotate(pose, chain[*path] + 12, axis);
@@ -68,6 +69,7 @@ static void body_motion(const double *rates, const uint32_t *path, const uint32_
             for (int i = 0; i < 3; ++i) centre_motion[i] += rate * axis[i];
             moved += w;
             distal += w;
+            second += 2.0 * stray;
         } else {
             double arm[3], turn[3];
             subtract(centre, pose + 9, arm);
@@ -76,9 +78,9 @@ static void body_motion(const double *rates, const uint32_t *path, const uint32_
                 centre_motion[i] += rate * turn[i];
                 rotation[i] += rate * axis[i];
             }
-            double lever = length_of(arm) + radius + moved;
-            moved += w * (length_of(turn) + radius + moved);
-            second += w * (3.0 * distal + w * lever);
+            double lever = length_of(arm) + radius + moved, reach = length_of(turn) + radius;
+            moved += w * (reach + moved);
+            second += w * (3.0 * distal + w * lever) + 2.0 * stray * reach;
             distal += w * lever;
         }
         ++out;
@@ -104,10 +106,8 @@ static inline double motion_along(const PairMotion *motion, const double *direct
 }
 
 /* The motion of two bodies relative to each other; `base` is the pose of the second body. */
-static void pair_motion(const BodyMotion *near, const BodyMotion *far, int is_straight,
-                        const double *base, PairMotion *out) {
-    *out = (PairMotion){.second = near->all + far->all, .all = near->all + far->all};
-    if (!is_straight) return;
+static void pair_motion(const BodyMotion *near, const BodyMotion *far, const double *base,
+                        PairMotion *out) {
     double centre[3];
     subtract(near->centre, far->centre, centre);
     rotate_back(base, centre, out->centres);
@@ -116,6 +116,7 @@ static void pair_motion(const BodyMotion *near, const BodyMotion *far, int is_st
     out->radii[0] = near->radius;
     out->radii[1] = far->radius;
     out->second = near->second + far->second;
+    out->all = near->all + far->all;
 }
 
 #endif
