@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -15,7 +15,7 @@ from harness.core.details import Details
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.collision.collision_model import SceneObject
-from harness.planning.model.robot_model import GroupSpace, pin_from_se3
+from harness.planning.model.robot_model import GroupSpace, RobotModel, pin_from_se3
 from harness.recording.motion_failures import OverloadFailure, TrajectoryFailure
 
 
@@ -30,7 +30,6 @@ class InverseDynamics:
     joint_names: tuple[str, ...]
     limits: FloatArray
     _space: GroupSpace
-    _model: pin.Model
     payloads: tuple[SceneObject, ...] = ()
 
     @classmethod
@@ -40,16 +39,7 @@ class InverseDynamics:
         limits = np.array([description.joint_by_name[name].effort for name in space.joint_names])
         if not np.any(np.isfinite(limits)):
             return None
-        model = space.robot.model
-        if payloads:
-            model = model.copy()
-            for payload in payloads:
-                assert payload.link is not None
-                inertia = pin.Inertia(payload.mass, payload.center_of_mass, payload.inertia)
-                placement = space.robot.placement(payload.link) @ payload.pose
-                joint = space.robot.parent_joint(payload.link)
-                model.appendBodyToJoint(joint, inertia, pin_from_se3(placement))
-        return cls(space.joint_names, limits, space, model, tuple(payloads))
+        return cls(space.joint_names, limits, space, tuple(payloads))
 
     def efforts(
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
@@ -58,33 +48,19 @@ class InverseDynamics:
         space = self._space
         columns = space.robot.velocity_columns
         q = space.robot.configuration(space.whole(positions))
-        v, a, found = np.zeros((3, len(positions), self._model.nv))
+        pool, _ = _loaded(space.robot, self.payloads)
+        v, a, found = np.zeros((3, len(positions), space.robot.model.nv))
         v[:, columns], a[:, columns] = velocities @ space.matrix.T, accelerations @ space.matrix.T
-        pin.rneaInParallel(1, self._pool, q.T, v.T, a.T, found.T)  # on one thread
+        pin.rneaInParallel(1, pool, q.T, v.T, a.T, found.T)  # on one thread
         return found[:, columns] @ space.matrix
 
-    @cached_property
+    @property
     def holds_anywhere(self) -> bool:
-        """Whether the limits exceed what gravity needs at most, however the arm stands.
-
-        Each body that a joint carries counts with its weight at the end of a straightened chain.
-        """
-        model, joints = self._model, self._space.robot.description.joint_by_name
-        most, carried = np.zeros(model.nv), np.zeros((model.njoints, 2))  # moment, mass
-        for joint in range(model.njoints - 1, 0, -1):
-            known, body = joints[model.names[joint]], model.inertias[joint]
-            moment, mass = carried[joint] + (np.linalg.norm(body.lever) * body.mass, body.mass)
-            slides = known.kind == "prismatic"
-            most[model.joints[joint].idx_v] = mass if slides else moment
-            away = np.linalg.norm(model.jointPlacements[joint].translation)
-            away += max(abs(known.lower), abs(known.upper)) if slides else 0.0
-            carried[model.parents[joint]] += moment + away * mass, mass
-        most = most[self._space.robot.velocity_columns] @ np.abs(self._space.matrix)
-        return bool(np.all(np.linalg.norm(model.gravity.linear) * most < self.limits))
-
-    @cached_property
-    def _pool(self) -> pin.ModelPool:
-        return pin.ModelPool(self._model, 1)
+        """Whether the limits exceed what gravity needs at most, however the arm stands."""
+        space = self._space
+        _, most = _loaded(space.robot, self.payloads)
+        needed = most[space.robot.velocity_columns] @ np.abs(space.matrix)
+        return bool(np.all(needed < self.limits))
 
     def can_hold(self, positions: FloatArray) -> bool:
         """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
@@ -115,10 +91,8 @@ class InverseDynamics:
         )
         overload = OverloadFailure(float(abs(effort)), limit)
         if self.payloads:
-            bare = InverseDynamics(
-                self.joint_names, self.limits, self._space, self._space.robot.model
-            )
-            unloaded = bare.efforts(positions[None], still, still)[0][joint]
+            bare = replace(self, payloads=()).efforts(positions[None], still, still)
+            unloaded = bare[0][joint]
             message += f"; without the load it needs {abs(unloaded):.1f} {unit}"
             share = (np.sign(effort) * limit - unloaded) / (effort - unloaded)
             overload = replace(
@@ -128,3 +102,30 @@ class InverseDynamics:
                 most_mass=float(share * sum(load.mass for load in self.payloads)),
             )
         return message, Details.of(TrajectoryFailure("standing effort", name), overload)
+
+
+@lru_cache(maxsize=4)
+def _loaded(
+    robot: RobotModel, payloads: tuple[SceneObject, ...]
+) -> tuple[pin.ModelPool, FloatArray]:
+    """The model with its payloads, and what each joint's effort against gravity is at most, (nv,).
+
+    Each body that a joint carries counts with its weight at the end of a straightened chain.
+    """
+    model, joints = robot.model.copy(), robot.description.joint_by_name
+    for payload in payloads:
+        assert payload.link is not None
+        inertia = pin.Inertia(payload.mass, payload.center_of_mass, payload.inertia)
+        placement = robot.placement(payload.link) @ payload.pose
+        joint = robot.parent_joint(payload.link)
+        model.appendBodyToJoint(joint, inertia, pin_from_se3(placement))
+    most, carried = np.zeros(model.nv), np.zeros((model.njoints, 2))  # moment, mass
+    for joint in range(model.njoints - 1, 0, -1):
+        known, body = joints[model.names[joint]], model.inertias[joint]
+        moment, mass = carried[joint] + (np.linalg.norm(body.lever) * body.mass, body.mass)
+        slides = known.kind == "prismatic"
+        most[model.joints[joint].idx_v] = mass if slides else moment
+        away = np.linalg.norm(model.jointPlacements[joint].translation)
+        away += max(abs(known.lower), abs(known.upper)) if slides else 0.0
+        carried[model.parents[joint]] += moment + away * mass, mass
+    return pin.ModelPool(model, 1), np.linalg.norm(model.gravity.linear) * most

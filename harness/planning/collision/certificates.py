@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import chain
 from typing import Any
@@ -18,7 +19,7 @@ from harness.planning.collision.convex_tree import concatenate
 from harness.planning.collision.native.library import FULL, Certify
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
-from harness.planning.model.robot_model import GroupSpace
+from harness.planning.model.robot_model import GroupSpace, RobotModel
 
 ROUNDING = 1e-5  # Band around a margin that is left undecided, because of Coal's tolerance [m]
 MOST_LEFT = 64 * 1024
@@ -101,7 +102,9 @@ class MotionArrays:
 
 def motion_arrays(model: CollisionModel, space: GroupSpace, margins: FloatArray) -> MotionArrays:
     """Create the arrays of a scene for a group's motions; pairs that move together are left out."""
-    moving = _moving_joints(space)
+    is_moving = np.any(space.matrix != 0, axis=1)
+    held = np.where(is_moving, 0.0, space.offset)
+    moving = _moving_joints(space.robot, tuple(is_moving.tolist()), tuple(held.tolist()))
     layout = _layout(model, tuple(moving.above), tuple(moving.parent.tolist()))
     margin = margins[layout.pairs]
     free = np.maximum(margin, 0.0) + ROUNDING
@@ -158,12 +161,9 @@ class MovingJoints:
         above: The moving joint that carries each Pinocchio joint, or -1.
     """
 
-    def __init__(self, space: GroupSpace) -> None:
-        robot, description = space.robot, space.robot.description
-        pin_model = robot.model
-        is_moving = np.any(space.matrix != 0, axis=1)
-        at_zero = np.where(is_moving, 0.0, space.offset)
-        pin.forwardKinematics(pin_model, robot.data, robot.configuration(at_zero))
+    def __init__(self, robot: RobotModel, is_moving: Sequence[bool], held: FloatArray) -> None:
+        description, pin_model = robot.description, robot.model
+        pin.forwardKinematics(pin_model, robot.data, robot.configuration(held))
         self._poses = [pin.SE3(pose) for pose in robot.data.oMi]
         index_of = {name: i for i, name in enumerate(description.joint_names)}
         self.above: list[int] = [-1]
@@ -203,8 +203,11 @@ class MovingJoints:
 
 
 @lru_cache(maxsize=4)
-def _moving_joints(space: GroupSpace) -> MovingJoints:
-    return MovingJoints(space)
+def _moving_joints(
+    robot: RobotModel, is_moving: tuple[bool, ...], held: tuple[float, ...]
+) -> MovingJoints:
+    """The same ones while the other joints are held where they are; moving ones count as zero."""
+    return MovingJoints(robot, is_moving, np.array(held))
 
 
 class _Layout:
