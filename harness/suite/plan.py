@@ -5,7 +5,7 @@ from __future__ import annotations
 import bisect
 import itertools
 from array import array
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -134,10 +134,9 @@ class Plan(LazySequence[PlannedCase]):
                 return index if is_selected else None
         return None
 
-    def where(self, is_selected: Callable[[PlannedCase], bool]) -> Plan:
-        """The cases of the plan that fulfil a condition."""
-        chosen = (n for n, each in zip(self._numbers, self, strict=True) if is_selected(each))
-        return Plan(self.files, array("Q", chosen))
+    def where(self, is_selected: Iterable[bool]) -> Plan:
+        """The cases of the plan that are selected, with one truth value for each."""
+        return Plan(self.files, array("Q", itertools.compress(self._numbers, is_selected)))
 
 
 def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
@@ -178,7 +177,7 @@ def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteReque
     plan = Plan(found if request.hooks.cases is None else request.hooks.cases(found))
     if not request.cases and not request.expression:
         return plan
-    return plan.where(lambda each: _is_selected(each, request))
+    return plan.where(_is_selected(each, request) for each in plan)
 
 
 def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:

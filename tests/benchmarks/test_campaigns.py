@@ -60,9 +60,10 @@ def parts_of(folder, count, parts=PARTS):
         part |= {"selection": selection}
         (root / "shard.json").write_text(json.dumps({**record, **part}))
     header = read_header(folder / "ball.scenario.yaml")
-    for planned in cases_of([(Path("ball.scenario.yaml"), header)], SuiteRequest(samples=count)):
+    plan = cases_of([(Path("ball.scenario.yaml"), header)], SuiteRequest(samples=count))
+    for planned, number in zip(plan, Shard(1, parts).numbers_of(plan), strict=True):
         case = planned.of.cases[planned.position]
-        stream = streams[Shard(1, parts).number_of(planned) - 1]
+        stream = streams[number - 1]
         result = replace(entry.result, case=case.name, seed=int(case.overrides["seed"]))
         stream.append(StreamEntry(f"{entry.key}{case.name}", result, case.values).line)
     return [folder / f"{count}/{number}" for number in range(1, parts + 1)]

@@ -153,17 +153,14 @@ def _lacking(
     suite: SuiteRun, folders: Sequence[Path], records: Sequence[ShardRecord]
 ) -> Iterator[str]:
     """A sentence for each part that was interrupted."""
-    planned, lacking = Counter[int](), Counter[int]()
-    for index, case in enumerate(suite.plan):
-        number = records[0].shard.number_of(case)
-        planned[number] += 1
-        lacking[number] += index not in suite.results
+    numbers = records[0].shard.numbers_of(suite.plan)
+    lacking = Counter(each for index, each in enumerate(numbers) if index not in suite.results)
     for folder, record in zip(folders, records, strict=True):
         number = record.shard.number
         if lacking[number]:
             yield (
-                f"part {record.shard} in '{folder}' lacks {lacking[number]} of {planned[number]}"
-                " results; run it again with --resume"
+                f"part {record.shard} in '{folder}' lacks {lacking[number]} of"
+                f" {numbers.count(number)} results; run it again with --resume"
             )
 
 

@@ -20,10 +20,10 @@ from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader, read_header, stated_variation
 from harness.suite.installation import Installation, installation
-from harness.suite.plan import PlannedCase
+from harness.suite.plan import Plan
 from harness.suite.request import SuiteRequest, SuiteSelection
 
-FORMAT = "armharness-shard/4"
+FORMAT = "armharness-shard/5"
 FILE = "shard.json"
 AUTO = "auto"
 SOURCES = (
@@ -49,18 +49,23 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.count}"
 
-    def number_of(self, case: PlannedCase) -> int:
-        """The number of the part that a case belongs to, by a hash of its file and name.
+    def numbers_of(self, plan: Plan) -> list[int]:
+        """The part of each case, by a hash: none has more than a quarter above its share."""
+        names = [f"{each.file.as_posix()}\0{each.name}" for each in plan]
+        codes = (each.encode(errors="surrogateescape") for each in names)
+        hashes = [int.from_bytes(hashlib.blake2b(each, digest_size=8).digest()) for each in codes]
+        counts, numbers = [0] * self.count, [0] * len(plan)
+        for index in sorted(range(len(plan)), key=hashes.__getitem__):
+            part = hashes[index] % self.count
+            if counts[part] >= len(plan) // self.count * 5 // 4:
+                part = counts.index(min(counts))
+            counts[part] += 1
+            numbers[index] = part + 1
+        return numbers
 
-        A case that is added or left out moves no other one to another part.
-        """
-        identity = f"{case.file.as_posix()}\0{case.name}".encode(errors="surrogateescape")
-        digest = hashlib.blake2b(identity, digest_size=8).digest()
-        return int.from_bytes(digest, "big") % self.count + 1
-
-    def has(self, case: PlannedCase) -> bool:
-        """Whether a case belongs to this part."""
-        return self.number_of(case) == self.number
+    def part_of(self, plan: Plan) -> Plan:
+        """The cases of this part."""
+        return plan.where(each == self.number for each in self.numbers_of(plan))
 
 
 def shard_of(text: str, environment: Mapping[str, str] = os.environ) -> Shard:

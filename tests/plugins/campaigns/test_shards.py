@@ -261,22 +261,24 @@ def test_a_merge_does_not_overwrite_one_of_its_parts(parts, tmp_path):
     assert (folders[1] / "results.jsonl").read_bytes() == before
 
 
-def identities(plan):
-    return [(each.file.name, each.name) for each in plan]
+def parts_of(plan, count):
+    """The file and the name of each case of each part."""
+    held = [Shard(number, count).part_of(plan) for number in range(1, count + 1)]
+    return [[(each.file.name, each.name) for each in part] for part in held]
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 7])
-def test_every_case_is_in_one_part_and_a_new_file_moves_none(tmp_path, monkeypatch, count):
+@pytest.mark.parametrize("count", [1, 2, 3, 10])
+def test_every_case_is_in_one_part_and_a_new_file_moves_none_of_many(tmp_path, monkeypatch, count):
     monkeypatch.chdir(tmp_path)
     for name, text in {"a": GRID, "b": GRID, "c": SAMPLED.replace("EARLY", "true")}.items():
         Path(f"{name}.scenario.yaml").write_text(text)
-    shards = [Shard(number, count) for number in range(1, count + 1)]
 
     def parts(*names):
         files = [Path(f"{name}.scenario.yaml") for name in names]
-        plan = planned_cases(files, SuiteRequest())
-        held = [identities(plan.where(shard.has)) for shard in shards]
-        assert sorted(each for part in held for each in part) == sorted(identities(plan))
+        plan = planned_cases(files, SuiteRequest(samples=1000))
+        held = parts_of(plan, count)
+        together = sorted(each for part in held for each in part)
+        assert together == sorted((each.file.name, each.name) for each in plan)
         return held
 
     for few, all_ in zip(parts("a", "c"), parts("a", "b", "c"), strict=True):
@@ -288,9 +290,21 @@ def test_many_cases_are_spread_evenly(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("c.scenario.yaml").write_text(SAMPLED.replace("EARLY", "true"))
     plan = planned_cases([Path("c.scenario.yaml")], SuiteRequest(samples=1000))
-    counts = [len(plan.where(Shard(number, 4).has)) for number in range(1, 5)]
+    counts = [len(part) for part in parts_of(plan, 4)]
     assert sum(counts) == len(plan)
     assert max(abs(each - len(plan) / 4) for each in counts) < 4 * (len(plan) * 3 / 16) ** 0.5
+
+
+@pytest.mark.parametrize(("files", "count"), [(2, 2), (3, 3), (5, 4), (7, 2), (2, 3), (15, 4)])
+@pytest.mark.parametrize("name", ["a", "pick", "lesson"])
+def test_a_few_files_are_spread_by_count(tmp_path, monkeypatch, files, count, name):
+    monkeypatch.chdir(tmp_path)
+    paths = [Path(f"{name}_{number}.scenario.yaml") for number in range(files)]
+    for path in paths:
+        path.write_text(GRID.partition("parametrize:")[0])
+    counts = [len(part) for part in parts_of(planned_cases(paths, SuiteRequest()), count)]
+    assert sum(counts) == files
+    assert max(counts) - min(counts) <= 1
 
 
 @pytest.mark.parametrize(

@@ -132,7 +132,7 @@ def _with_part(
         if conditions is not None:
             conditions.copy(root)  # a merge has neither the scenario files nor the conditions
 
-    return replace(hooks, part=lambda plan: plan.where(shard.has), planned=planned)
+    return replace(hooks, part=shard.part_of, planned=planned)
 
 
 def _write(suite: SuiteRun, folder: Path, history: History) -> tuple[Path, Columns]:
