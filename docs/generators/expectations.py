@@ -78,6 +78,8 @@ or put on it |
 | held on a running belt | `placed` of an object on a surface that runs at the end: a stop keeps \
 it there, and not its support |
 | held by a weld | `inserted` of a peg that is welded to the hand |
+| still moving | `joint` of a door, drawer or lid that moves faster than what is `static`, \
+5 mm/s or 0.05 rad/s, at the moment it is judged at |
 | no collision shapes | `collision`, `in_contact` or `clearance` of a robot with moving links \
 that have no collision shapes: they pass through everything |
 

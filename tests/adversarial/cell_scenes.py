@@ -107,6 +107,16 @@ CELL_SCENES = (
         ("joint: {object: chest, at_most: 2 deg}",),
     ),
     Scene(
+        "lid that is falling shut",
+        "a lid stood open by 80 degrees, and the run ends while it falls",
+        (CHEST % LID).replace("wait: 2 s", "wait: 0.15 s"),
+        "its angle at the end is more than 30 degrees",
+        lambda run: part_of(run)[-1] > 0.55,
+        (),
+        ("always: {joint: {object: chest, at_least: 30 deg}}",),
+        warned=("joint: {object: chest, at_least: 30 deg, at_most: 79 deg}",),
+    ),
+    Scene(
         "drawer that a spring closed",
         "a drawer stood open by 15 cm, and its spring pulls it back",
         CHEST % DRAWER,
@@ -123,6 +133,57 @@ CELL_SCENES = (
         lambda run: np.linalg.norm((place_of(run, "peg") - place_of(run, "block"))[-1, :2]) < 0.06,
         ("inserted: {peg: peg, hole: block, depth: 39 mm}",),
         ("upright: peg",),
+    ),
+    Scene(
+        "disk in its hole",
+        "a disk of 15 mm has fallen into a hole of its diameter",
+        (PEG % (0.3, 0.06)).replace("length: 80 mm", "length: 15 mm").replace("0.3}]", "0.6}]"),
+        "the axis of its longest extent is 10 mm from the hole's: too strict",
+        lambda run: abs(place_of(run, "peg")[-1, 2] - 0.0175) < 1e-3,
+        (),
+        ("inserted: {peg: peg, hole: block, depth: 39 mm}",),
+        truth=lambda run: (
+            np.linalg.norm((place_of(run, "peg") - place_of(run, "block"))[-1, :2]) < 0.5e-3
+        ),
+    ),
+    Scene(
+        "box that a steep belt raises past the hand",
+        "a belt of 15 degrees carries a box upwards",
+        """objects:
+  - {name: belt, static: true, box: {size: [0.8, 0.15, 0.02]}, friction: 1,
+     pose: {xyz: [0, 0.3, 0.15], rpy: [0, -15 deg, 0]}, surface_velocity: 20 cm/s}
+  - {name: cube, box: {size: [0.04, 0.04, 0.04]}, mass: 50 g, friction: 1,
+     pose: {xyz: [-0.15, 0.3, 0.141], rpy: [0, -15 deg, 0]}}
+steps: [{wait: 1.2 s}]
+""",
+        "it is 5 cm higher than it was",
+        lambda run: place_of(run, "cube")[-1, 2] > place_of(run, "cube")[0, 2] + 0.05,
+        ("lifted: {object: cube, above: 5 cm}", "placed: {object: cube, on: belt}"),
+        ("on: {object: cube, support: belt}",),
+    ),
+    Scene(
+        "box that slips on a belt",
+        "a smooth belt runs at 0.3 m/s under a box, and stops",
+        """objects:
+  - {name: belt, static: true, box: {size: [1.2, 0.2, 0.02]}, pose: {xyz: [0, 0.3, 0.01]},
+     surface_velocity: 0, friction: 0.02}
+  - {name: cube, box: {size: [0.04, 0.04, 0.04]}, mass: 50 g, pose: {xyz: [-0.4, 0.3, 0.04]}}
+steps:
+  - conveyor: {object: belt, velocity: 0.3, ramp: 0.1}
+  - {wait: 1 s, id: ride}
+  - conveyor: {object: belt, velocity: 0, ramp: 0.1}
+  - wait: 20 ms
+""",
+        "the belt had its speed for a second, and stands at the end",
+        lambda run: (
+            np.sum(run.signals.surfaces["belt"][:, 0] > 0.299) * run.timestep > 0.9
+            and not run.signals.surfaces["belt"][-1].any()
+        ),
+        (
+            "{formula: 'always speed(cube) > 0.29 m/s', during: ride}",
+            "placed: {object: cube, on: belt}",
+        ),
+        ("formula: eventually surface_velocity(belt) > 0.299 m/s",),
     ),
     Scene(
         "rod that both hands hold",

@@ -341,13 +341,15 @@ RULES = (
     ),
     Rule(
         "What holds at the end holds by itself",
-        "A joint or an object is where it is at the end, wherever it was before. What"
+        "A joint or an object is where it is at the end, wherever it was before; of a joint that"
+        " moves there a warning says so. What"
         f" [`placed`]({EXPECTATIONS}#placed) finds at rest on a surface that runs is kept there by"
         " something else, and it passes with a warning. Of what two hands hold, nothing is"
         " released.",
         (
             "box that a wall holds on a running belt",
             "lid that fell shut",
+            "lid that is falling shut",
             "drawer that a spring closed",
             "rod that both hands hold",
         ),
