@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -244,6 +245,10 @@ class WorldChoice(SpecModel):
 
 class ScenarioContent(SpecModel):
     """The keys of a scenario that every case of it has."""
+
+    @classmethod
+    def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
+        return ObjectSpec.not_yet.get(key) or ObjectSpec.unknown_key_hint(key, content)
 
     scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(
         description="The title of the scenario."

@@ -293,12 +293,13 @@ class ObjectSpec(SpecModel):
         """The key of the shape that a message of MoveIt has in `type` and `dimensions`."""
         if key in ("conveyor", "belt", "turntable"):
             return (
-                "a belt is `static: true` with `surface_velocity: 0.1`, a turntable one with"
-                " `surface_rotation`; the step `conveyor` starts and stops either"
+                "a belt is an object with `static: true` and `surface_velocity: 0.1`, a turntable"
+                " one with `surface_rotation`; the step `conveyor` starts and stops either"
             )
         if key in ("hinge", "slide", "door", "drawer"):
             return (
-                "doors and drawers are `joints`: [{name: door, hinge: {axis: [0, 0, 1], ...}, ...}]"
+                "doors and drawers are `joints` of an object:"
+                " [{name: door, hinge: {axis: [0, 0, 1], ...}, ...}]"
             )
         return _shape_words(content) if key in ("type", "dimensions") else ""
 

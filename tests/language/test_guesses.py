@@ -31,6 +31,23 @@ def test_doors_and_drawers_are_joints(key):
     assert "`joints`" in found[0][1]
 
 
+@pytest.mark.parametrize(
+    ("key", "word"),
+    [
+        ("conveyor: {speed: 0.1}", "`surface_velocity: 0.1`"),
+        ("turntable: 1", "`surface_rotation`"),
+        ("suction: true", "`robot: {model: ur5e, gripper: suction_cup}`"),
+        ("vacuum: {cups: 2}", "`robot: {model: ur5e, gripper: suction_cup}`"),
+        ("door: a", "`joints` of an object"),
+    ],
+)
+def test_what_is_a_part_of_an_object_or_a_gripper_is_no_key_of_a_scenario(key, word):
+    [(message, hint)] = messages(f"{key}\n{HEAD}  - settle\n")
+    assert message == f"unknown key `{key.partition(':')[0]}`"
+    assert word in hint
+    assert "did you mean" not in hint
+
+
 def test_several_robots_have_names():
     text = "scenario: x\nrobots: [ur3e, ur5e]\nsteps:\n  - settle\n"
     [(message, hint)] = messages(text)
@@ -52,6 +69,9 @@ def test_several_robots_have_names():
         f"{HEAD}  - gripper: 0.01\n",
         f"{HEAD}  - move_to: [0, 0, 0]\n",
         f"{HEAD}  - assert: {{lifted: a}}\n",
+        f"objects: [{BOX % 'joint: hinge'}]\n{HEAD}  - settle\n",
+        f"{HEAD}  - attach_object: {{object: a, touch_link: hand}}\n",
+        f"{HEAD}  - place: {{object: a, poses: up}}\n",
     ],
 )
 def test_a_guess_brings_no_second_problem(text):
@@ -86,6 +106,20 @@ def test_mistakes_below_a_slip_of_the_pen_and_a_known_synonym_are_reported_too(t
 )
 def test_the_first_advice_can_be_followed(step, advice):
     assert advice in messages(f"{HEAD}  - {step}\n")[0][1]
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "allow_collisions: {pairs: [[a, b]], during: true}",
+        "attach_object: {object: a, touch_links: false}",
+        "lin: {pose: {xyz: true}}",
+    ],
+)
+def test_true_and_false_are_not_written_as_the_items_of_a_list(step):
+    [(message, hint)] = messages(f"{HEAD}  - {step}\n")
+    assert "is a list, not `" in message
+    assert hint == ""
 
 
 @pytest.mark.parametrize(

@@ -178,8 +178,8 @@ class _Shaper:
         """A value under the key that was probably intended; its mistakes count for a slip alone."""
         count = len(self.problems)
         shaped = self.field(entry.value, keys_of(model)[near])
-        is_intended = key in SYNONYMS.get(near, ()) and _can_be(entry.value, keys_of(model)[near])
-        if key in model.not_yet or not (is_slip(key, near) or is_intended):
+        is_near = is_slip(key, near) or key in SYNONYMS.get(near, ())
+        if key in model.not_yet or not (is_near and _can_be(entry.value, keys_of(model)[near])):
             del self.problems[count:]
             self.guessed.update(_places(shaped))
         return Entry(entry.key, shaped)

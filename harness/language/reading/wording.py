@@ -173,6 +173,8 @@ def _list(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]
     """A value in place of a list, and how it is written as one."""
     given: object = error["input"]
     message = f"is a list, not {value}"
+    if isinstance(given, bool):
+        return message, ""  # no list has such items
     if isinstance(given, dict):
         axes = cast("dict[str, object]", given)
         if list(axes) in (["x", "y", "z"], ["x", "y", "z", "w"], ["roll", "pitch", "yaw"]):

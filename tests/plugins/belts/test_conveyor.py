@@ -83,7 +83,7 @@ def test_what_a_belt_carries_does_not_come_to_rest(tmp_path):
         (
             [BELT + ", conveyor: 0.1}"],
             "{object: belt, velocity: 0.1}",
-            ["a belt is `static: true` with `surface_velocity: 0.1`"],
+            ["a belt is an object with `static: true` and `surface_velocity: 0.1`"],
         ),
         (
             [BELT + ", surface_velocity: 0}"],
