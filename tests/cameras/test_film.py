@@ -41,6 +41,7 @@ def test_a_film_shows_the_run_in_real_time_and_size():
     assert np.abs(film[0].astype(int) - film[-1]).max() > 40, "something moves"
 
 
+@pytest.mark.nightly
 def test_equal_runs_have_equal_films():
     films = [draw_film(stored(lift_run()), (320, 180), 2.0) for _ in range(2)]
     assert films[0] == films[1]

@@ -23,6 +23,7 @@ def test_a_drawn_scenario_ends_with_an_outcome_and_one_digest(seed, tmp_path):
     assert end in ("passed", "failed", "refused")
 
 
+@pytest.mark.nightly
 def test_most_words_of_the_language_are_drawn():
     """And what is drawn is read; the test could not fail where nothing is."""
     drawn = [drawn_scenario(seed) for seed in range(15)]

@@ -66,6 +66,7 @@ def test_an_interrupted_run_says_where_it_stood(folder, number):
     assert not list(folder.glob("reports/**/.*")), "nothing half written"
 
 
+@pytest.mark.nightly
 def test_an_interrupted_suite_counts_what_is_missing(folder):
     session = run_in_terminal(
         ["run", "short.scenario.yaml", "long.scenario.yaml", "--no-page", *PLUGIN],
@@ -206,6 +207,7 @@ def test_every_run_cleans_the_whole_report_folder(folder):
     assert (reports / "short" / "run.json").is_file()
 
 
+@pytest.mark.nightly
 def test_a_killed_run_leaves_nothing_after_the_next_one(folder):
     gate = Gate(folder)
     with subprocess.Popen(

@@ -64,6 +64,7 @@ def assistant(tmp_path_factory):
         yield Assistant(portal, client, root)
 
 
+@pytest.mark.nightly
 def test_an_assistant_writes_repairs_and_passes_a_pick(assistant):
     """Also in a folder with a `yaml.py`: no command imports it instead of the package."""
     [case] = assistant.answer("write", file="mine.scenario.yaml", text=WRONG)

@@ -150,6 +150,7 @@ def test_the_name_of_a_file_is_never_an_option(server):
     (server.root / "--plugin=evil.scenario.yaml").unlink()
 
 
+@pytest.mark.nightly
 def test_many_calls_at_once_run_few_commands_at_the_same_time(tmp_path):
     (tmp_path / "started").mkdir()
     (tmp_path / "site").mkdir()

@@ -96,6 +96,7 @@ def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(nam
         assert result.min_distance <= found.excess
 
 
+@pytest.mark.nightly
 def test_a_bin_is_its_floor_and_its_walls():
     found = decomposed("bin")
     assert len(found.parts) == 5

@@ -67,6 +67,7 @@ def test_a_hand_that_starts_closed_takes_a_box_from_above(tmp_path):
     assert (found.problems, found.predicted) == ((), ())
 
 
+@pytest.mark.nightly
 def test_a_single_jaw_closes_an_object_on_the_palm(tmp_path):
     assert SIX_WITH_JAW != SIX
     write_arm(tmp_path, SIX_WITH_JAW)

@@ -49,6 +49,7 @@ def test_the_tool_is_over_the_object_when_it_arrives(motion, tmp_path):
     assert (way > 0.04) == ("4" in motion)
 
 
+@pytest.mark.nightly
 def test_an_object_that_is_not_within_reach_yet_is_awaited(tmp_path):
     recorded = run(tmp_path, "surface_velocity: 10 cm/s", x=-0.38)
     assert recorded.steps[-1].status == "passed"

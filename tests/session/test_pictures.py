@@ -65,6 +65,7 @@ print(len(found[0]), found[0] == found[1])
 """
 
 
+@pytest.mark.nightly
 def test_pictures_are_the_same_from_another_process_and_from_the_one_of_the_run(tmp_path):
     steps = "- ptp: {joints: {joint1: 0.5}}\n- ptp: {joints: {joint1: 0.1}}"
     file = file_of(tmp_path, steps, robot="open_manipulator_x", rest="")

@@ -59,6 +59,7 @@ def test_a_ball_that_falls_into_a_cup_stays_in_it(tmp_path, mode):
     assert z == pytest.approx(0.006 + 0.012, abs=0.004)  # their stated excess
 
 
+@pytest.mark.nightly
 def test_a_ball_stays_on_top_of_the_hull_of_a_cup(tmp_path):
     cup_file(tmp_path)
     _, record = run(tmp_path, "- wait: 0.2 s", robot=ARM, rest=CUP % ", collision: hull")

@@ -46,5 +46,6 @@ def test_two_runs_are_equal_to_the_bit(first, ur3e, gripper_over_table):
     assert_equal_bits(first, a_run(ur3e))
 
 
+@pytest.mark.nightly
 def test_time_in_pieces_is_the_same_time(first, ur3e):
     assert_equal_bits(first, a_run(ur3e, pieces=20))

@@ -19,6 +19,7 @@ planning: {max_velocity_scaling_factor: 0.3, max_acceleration_scaling_factor: 0.
 """
 
 
+@pytest.mark.nightly
 def test_a_bottle_in_the_hand_stays_upright_on_the_way_to_a_position(tmp_path):
     """A position leaves the orientation of the hand open: it ends with the bottle upright too."""
     steps = """

@@ -140,6 +140,7 @@ def test_words_that_are_too_long_for_a_path_are_no_files(tmp_path):
     assert [path for path, _ in named_files(file)] == [file]
 
 
+@pytest.mark.nightly
 def test_problems_of_a_file_are_reported_with_the_path_of_the_sender(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = Path("wait.scenario.yaml").resolve()

@@ -95,6 +95,7 @@ def test_a_drop_is_measured_from_the_face_that_is_pressed(found, tmp_path):
     assert samples[0] - samples[-1] > drop + 1e-4
 
 
+@pytest.mark.nightly
 def test_a_hole_that_is_too_far_away_says_so(tmp_path):
     result = run_of(tmp_path, 0.102, PRESSING % SEARCH.replace("0.5 mm", "0.3 mm"))
     assert "the hole is farther away than the `radius`" in str(result)

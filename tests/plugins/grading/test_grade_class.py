@@ -292,6 +292,7 @@ def test_what_holds_because_the_robot_did_not_move_earns_nothing(tmp_path):
     assert json.loads(report)["file"] == "halfway.scenario.yaml"
 
 
+@pytest.mark.nightly
 def test_a_report_that_cannot_be_written_costs_its_page_and_no_points(tmp_path):
     """Files of the case have at most 1 MB, as on a full disk; 40 s of simulation need more."""
     assignment, _ = scenario_class(tmp_path)

@@ -201,6 +201,7 @@ def test_cameras_send_pictures_while_someone_watches(tmp_path):
     assert info[0].k[2] == 320
 
 
+@pytest.mark.nightly
 def test_a_camera_that_is_drawn_more_slowly_than_its_rate_is_said(tmp_path):
     camera = (
         "cameras:\n  - {name: wide, image: {width: 1280, height: 960}, update_rate: 100,"

@@ -7,6 +7,8 @@ import sys
 from contextlib import closing
 from pathlib import Path
 
+import pytest
+
 from harness.plugins.ros.domain import free_domain
 from harness.suite.environment import ONE_THREAD
 from tests.plugins.ros.bridging import scenario
@@ -15,6 +17,7 @@ from tests.plugins.ros.nodes import Node
 from tests.waiting import HANG
 
 
+@pytest.mark.nightly
 def test_the_bridge_has_one_thread_so_that_its_forks_inherit_no_lock(tmp_path):
     file = scenario(tmp_path, "- external: {}", robot=UR)
     command = [sys.executable, "-c", "from harness.cli.main import entry; entry()"]

@@ -14,6 +14,7 @@ SUCCESS, INVALID_GOAL_CONSTRAINTS, CONTROL_FAILED = 1, -16, -4
 FINGERS = {"gripper_left_joint": 0.019, "gripper_right_joint": 0.019}
 
 
+@pytest.mark.nightly
 def test_a_goal_of_a_gripper_names_the_joint_that_follows_and_the_gripper_has_its_own_speed(
     tmp_path,
 ):

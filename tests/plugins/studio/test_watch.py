@@ -93,6 +93,7 @@ def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
     assert results[0].digest == unwatched.digest
 
 
+@pytest.mark.nightly
 def test_who_does_not_read_what_is_sent_delays_nothing(request_, unwatched, tmp_path):
     with Listener(str(tmp_path / "s"), "AF_UNIX") as listener:
         results = []

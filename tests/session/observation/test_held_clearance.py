@@ -66,6 +66,7 @@ def test_what_is_attached_in_the_planning_scene_alone_has_a_distance(tmp_path, s
     assert [verdict.status for verdict in result.verdicts] == [status], failures(result)
 
 
+@pytest.mark.nightly
 def test_an_object_that_the_hand_lets_go_of_and_stays_attached_has_a_distance_again(tmp_path):
     steps = (
         TAKE

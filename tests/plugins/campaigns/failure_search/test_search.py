@@ -116,6 +116,7 @@ def test_the_page_of_a_search_says_what_was_tried_and_each_command_runs(tmp_path
     assert passed.locator(".command").count() == 0, "no command draws the run of a search again"
 
 
+@pytest.mark.nightly
 def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_path, capsys):
     code, found = search(tmp_path, TWO_KINDS, "--runs", "40", "--start", "8", "-j", "2")
     assert code == 1
