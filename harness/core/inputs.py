@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import sys
 from collections.abc import Callable, Mapping
+from glob import glob
 from pathlib import Path
 
 from harness.core.files import is_dir, path_exists
@@ -47,11 +48,10 @@ def note_inputs(listener: Callable[[str], object]) -> None:
 def is_there(path: Path) -> bool:
     """Whether a path of a search exists; where nothing is, that is an input.
 
-    What appears there later would be found first.
+    What appears there later would be found first. So are the names that a path with wildcards has.
     """
-    found = path_exists(path)
-    if not found:
-        _read.setdefault(str(path.absolute()), "")
+    if not (found := path_exists(path)):
+        _read.setdefault(str(path.absolute()), content_hash(path))
     return found
 
 
@@ -84,4 +84,5 @@ def content_hash(path: Path) -> str:
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
-        return ""
+        names = sorted(glob(path.name, root_dir=path.parent))  # noqa: PTH207 - `**` is `*` here
+        return hashlib.sha256("/".join(names).encode()).hexdigest() if names else ""

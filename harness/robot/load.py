@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import RobotError, RobotOptionError
-from harness.core.files import is_dir, is_file
+from harness.core.files import is_dir
 from harness.core.geometry import CollisionMode
+from harness.core.inputs import is_there
 from harness.core.limits import XML_FILE
 from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
@@ -222,7 +223,7 @@ def _part(
     if name in _catalogue():
         return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))
     folder = base_dir / name
-    if is_file(folder / "robot.yaml"):
+    if is_there(folder / "robot.yaml"):
         return _read(folder, read_robot_yaml(folder), "", args)
     if name in collected_robots():
         folder, facts = collected_robots()[name]

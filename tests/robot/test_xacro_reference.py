@@ -98,7 +98,8 @@ BODIES = {
     "includes": """
       <xacro:include filename="limbs.xacro"/><xacro:limb name="a"><o/><m><n/></m></xacro:limb>
       <x w="${width}"/><xacro:include filename="gone.xacro" optional="true"/>
-      <xacro:include filename="limb*.xacro"/>
+      <xacro:include filename="limb*.xacro"/><xacro:include filename="**mbs.xacro"/>
+      <xacro:include filename="l**.xacro"/>
     """,
     "includes with a namespace": """
       <xacro:property name="width" value="0.9"/><xacro:include filename="limbs.xacro" ns="lib"/>

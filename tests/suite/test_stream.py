@@ -176,6 +176,7 @@ def searched(tmp_path, scenario, appears, text):
     (tmp_path / "second" / "block").mkdir()
     (tmp_path / "second" / "block" / "model.sdf").write_text(MODEL)
     (tmp_path / "room.sdf").write_text(ROOM)
+    (tmp_path / "arm.xacro").write_text(ARM)
     (tmp_path / "a.scenario.yaml").write_text(
         f"{scenario}params: {{n: 1}}\nparametrize: {{n: [1, 2]}}\n"
     )
@@ -214,6 +215,25 @@ steps: [{wait: 0.01}]
 """
 
 
+OPTIONAL = """\
+scenario: Files that a robot may have
+robot: {xacro: arm.xacro}
+steps: [{wait: 0.01}]
+"""
+PROPERTY = '<robot xmlns:xacro="x"><xacro:property name="width" value="0.3"/></robot>'
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:property name="width" value="0.1"/>
+<xacro:include filename="first/own.xacro" optional="true"/>
+<xacro:include filename="first/part*.xacro"/>
+<link name="base"/><link name="tip"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="${width} 0.1 0.1"/></geometry></collision></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/>
+<origin xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="9"/></joint></robot>
+"""
+
+
 @pytest.mark.nightly(but=["a package"])
 @pytest.mark.parametrize(
     ("scenario", "appears", "text"),
@@ -221,8 +241,10 @@ steps: [{wait: 0.01}]
         (FOUND_LATE, "package.xml", "<package><name>arm</name></package>"),
         (FOUND_LATE, "arm/package.xml", "<package><name>arm</name></package>"),
         (MODELS, "block/model.sdf", MODEL),
+        (OPTIONAL, "own.xacro", PROPERTY),
+        (OPTIONAL, "part_b.xacro", PROPERTY),
     ],
-    ids=["a package", "a folder of packages", "a model"],
+    ids=["a package", "a folder of packages", "a model", "an optional include", "a wildcard"],
 )
 def test_what_appears_earlier_on_a_search_path_is_noticed(tmp_path, scenario, appears, text):
     assert searched(tmp_path, scenario, appears, text)

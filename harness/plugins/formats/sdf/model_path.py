@@ -106,12 +106,11 @@ class ModelPath:
     def _cached(self, uri: str) -> list[Path]:
         """Candidates for a Fuel model: the newest version in Gazebo's cache, or the bundled one."""
         found = FUEL.match(uri)
-        if found is None:
+        if found is None or ".." in found.groups():
             return []
         host, owner, name = (found[key].lower() for key in ("host", "owner", "name"))
-        if ".." in (host, owner, name):
-            return []
         folder = self._cache / host / owner / "models" / name.replace("%20", " ")
+        is_there(folder / "*")  # a version that is downloaded later is newer
         versions = [path for path in folder.glob("*") if path.name.isdigit()]
         newest = sorted(versions, key=lambda path: int(path.name))[-1:]
         is_bundled = owner == "openrobotics"
@@ -126,7 +125,7 @@ def model_file(folder: Path, element: XmlElement) -> Path:
         SpecError: The folder has no such file.
     """
     config = folder / "model.config"
-    if not is_file(config):
+    if not is_there(config):
         if is_file(folder / "model.sdf"):
             return folder / "model.sdf"
         element.refuse(f"the folder '{folder}' has neither model.config nor model.sdf")

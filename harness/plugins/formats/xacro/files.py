@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
+from glob import glob
 from pathlib import Path
 from typing import Any
 
-from harness.core.files import is_file
+from harness.core.inputs import is_there
 from harness.core.limits import XACRO_FILES
 from harness.language.files.source import Located, Source
 from harness.language.files.xml_file import XmlElement, read_bounded
@@ -54,7 +55,7 @@ class Files:
         path = Path(self.absolute(name))
         if not self._packages.may_read(path):
             raise ExpressionError(self._packages.outside(name, path.resolve()))
-        if not is_file(path):
+        if not is_there(path):
             raise MissingFile(f"there is no file '{name}'")
         return path
 
@@ -78,7 +79,8 @@ class Files:
             raise ExpressionError(f"'{name}': only the name of a file may have wildcards")
         if not self._packages.may_read(path):
             raise ExpressionError(self._packages.outside(name, path.resolve()))
-        return [self.named(str(each)) for each in sorted(path.parent.glob(path.name))]
+        is_there(path)  # what it matches is an input
+        return [self.named(each) for each in sorted(glob(str(path)))]  # noqa: PTH207 - `**` is `*`
 
     def document(self, path: Path) -> XmlElement:
         """The document of a file, which is rendered from now on.
@@ -106,7 +108,6 @@ class Files:
         """The content of a YAML file, as xacro's `load_yaml` has it.
 
         Args:
-            name: The path of the file.
             number: The value of an expression with a unit, such as that of `!degrees 2 * 45`.
         """
         path = self.named(name)
