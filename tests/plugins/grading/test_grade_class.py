@@ -155,6 +155,37 @@ def test_every_student_reads_what_to_do_next(graded, browser, name, words, advic
         assert f"{arrow.strip(chr(34))} {shown.inner_text()}".startswith(advice)
 
 
+def test_the_table_of_a_class_is_sorted_and_searched(graded, browser):
+    with closing(new_context(browser, viewport={"width": 1440, "height": 900})) as context:
+        opened = context.new_page()
+        opened.goto((graded / "index.html").as_uri())
+        names = opened.locator("#submissions tbody tr:visible td:first-child a")
+        head = opened.get_by_role("columnheader", name="Points", exact=True).first
+        head.get_by_role("button").click()
+        assert names.all_inner_texts() == ["broken", "moves", "typo", "low", "constant", "perfect"]
+        assert head.get_attribute("aria-sort") == "ascending"
+        head.get_by_role("button").click()
+        assert names.first.inner_text() == "perfect"
+        opened.get_by_role("button", name="Submission").click()
+        assert names.all_inner_texts() == sorted(names.all_inner_texts())
+        assert head.get_attribute("aria-sort") is None
+        opened.fill("#find input", "hidden CASE")
+        assert names.all_inner_texts() == ["constant"]
+        assert opened.inner_text("#find output") == "1 of 6"
+
+
+def test_a_student_sees_the_moment_that_lost_the_points_next_to_the_advice(graded, browser):
+    with closing(new_context(browser, viewport={"width": 1440, "height": 900})) as context:
+        opened = context.new_page()
+        opened.goto((graded / "students/low/index.html").as_uri())
+        moment = opened.locator("#next a.moment")
+        assert moment.get_attribute("href").startswith("run/report.html#t=1.9")
+        assert moment.inner_text().startswith("2/2 move_to")
+        assert moment.locator("img").evaluate("(img) => img.decode().then(() => img.naturalWidth)")
+        opened.goto((graded / "students/perfect/index.html").as_uri())
+        assert moment.count() == 0
+
+
 def test_a_picture_says_what_failed_in_its_step_and_not_that_the_motion_passed(graded, browser):
     with closing(new_context(browser, viewport={"width": 1440, "height": 900})) as context:
         opened = context.new_page()

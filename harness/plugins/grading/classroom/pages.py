@@ -1,4 +1,4 @@
-"""The page of a class and that of each student, static and without scripts."""
+"""The page of a class, whose script sorts its table, and that of each student."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def _class_html(grade: ClassGrade, folder: Path) -> str:
     failed_hidden = {each.submission.folder: _failed_hidden(each, folder) for each in students}
     return bundle.rendered(
         FOLDER / "class.html",
-        script="",
+        script=bundle.script(FOLDER / "class.js"),
         style=_style(),
         title=grade.assignment.model.assignment,
         made=suite_page.made(),
