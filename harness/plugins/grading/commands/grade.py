@@ -219,6 +219,8 @@ def print_grade(grade: Grade) -> None:
 
 
 def _points(row: Graded) -> str:
+    if not row.points:
+        return "no points"
     if row.verdict.status == "not observable" and not row.is_withheld:
         return f"?/{row.points:g}"
     mark = "*" if row.is_withheld else ""
