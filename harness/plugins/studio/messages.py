@@ -33,7 +33,7 @@ def robot_message(cell: LiveCell) -> Message:
     return {
         "type": "robot",
         "name": description.name,
-        "title": description.name.replace("_", " "),
+        "title": description.name,
         "arms": list(description.of_arm),
         "arm": description.selected_arm,
         "tcp": description.tcp_link,

@@ -1,6 +1,7 @@
 """The studio in a real browser: one robot, from the first slider to a saved scenario."""
 
 import re
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -246,6 +247,36 @@ def test_a_breakpoint_stops_before_its_step(picked):
     opened.wait_text("#status", "3 of 5 steps executed")
     opened.page.keyboard.press("F5")
     opened.wait_text("#status", "5 of 5 steps executed")
+
+
+@pytest.mark.parametrize(("width", "shown"), [(1440, True), (1024, False)])
+def test_every_icon_of_the_toolbars_has_its_word_or_a_tooltip(opened, width, shown):
+    opened.page.set_viewport_size({"width": width, "height": 900})
+    labels = opened.page.locator(".tools .icon, #save").evaluate_all(
+        "all => all.map((each) => [each.ariaLabel, getComputedStyle(each, '::after').content,"
+        " each.title])"
+    )
+    assert len(labels) == 9
+    for label, drawn, title in labels:
+        assert (drawn == f'"{label}"') == shown, label
+        assert len(title) > len(label), "the tooltip says more"
+    assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_the_mark_of_an_executed_step_stays_with_its_line(browser, serve):
+    """Also while nothing moves, and lines above it are added or removed."""
+    with closing(new_context(browser)) as context:
+        written = "scenario: mark\nrobot: open_manipulator_x\nsteps:\n  - wait: 1 ms\n"
+        page = Page(context, serve(written).address)
+        page.page.click("#run-next")
+        page.wait_text("#status", "1 of 1 steps executed")
+        page.page.click("#play")  # nothing comes from the cell any more
+        page.wait("document.querySelector('#play').ariaPressed === 'false'")
+        for text, line in (("# a comment\n" * 2, 6), ("", 4)):
+            page.type_scenario(text + written)
+            marked = "document.querySelector('.ace_gutter-cell.done')?.innerText.trim()"
+            page.wait(f"{marked} === '{line}'")
+            assert page.page.locator(".ace_gutter-cell.done").count() == 1
 
 
 def test_a_mistake_is_marked_at_its_place_with_advice(opened):
