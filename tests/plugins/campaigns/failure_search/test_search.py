@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import subprocess
 import sys
 
@@ -89,9 +90,9 @@ def test_the_page_of_a_search_says_what_was_tried_and_each_command_runs(tmp_path
     [page_file] = (tmp_path / "reports").rglob("index.html")
     page = visit(page_file).page
     shrunk = sum(each["shrink_runs"] for each in found["failures"])
-    assert page.locator("#tried p").all_inner_texts() == [
+    assert page.locator("#tried p:not(.quiet)").all_inner_texts() == [
         "Varied: x (-0.5 to 0.5), y (-0.489 to 0.489), z (0.4 to 1.1).",
-        "12 runs, listed below: 12 spread evenly over the ranges.",
+        "12 runs, listed below, spread evenly over the ranges.",
         f"{shrunk} more runs found the smallest changes.",
     ]
     order = "[...document.querySelectorAll('main > section')].map((each) => each.id)"
@@ -99,7 +100,10 @@ def test_the_page_of_a_search_says_what_was_tried_and_each_command_runs(tmp_path
     change = page.locator(".change").first
     assert change.locator(".replay").count() == 2
     assert change.locator(".moved > b").count() == 1, "where the value stands in its range"
-    again = change.locator("[data-copy]").inner_text()
+    both = change.locator("[data-copy]").last.inner_text()
+    reports = page_file.parent / "nominal", page_file.parent / "failure1"
+    assert shlex.split(both) == ["harness", "compare", *map(str, reports)]
+    again = change.locator("[data-copy]").first.inner_text()
     assert again == f"harness run {found['failures'][0]['scenario']}"
     assert change.locator(f"button[aria-label='copy {again}']").is_visible()
     assert main([*again.split()[1:], "--no-report"]) == 1
