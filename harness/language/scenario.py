@@ -265,7 +265,7 @@ class ScenarioContent(SpecModel):
     robot: RobotSpec | None = Field(
         default=None, description="The robot: the name of a model, or its keys."
     )
-    robots: Annotated[dict[ArmName, RobotSpec], Field(min_length=2, max_length=8)] | None = Field(
+    robots: Annotated[dict[ArmName, RobotSpec], Field(min_length=1, max_length=8)] | None = Field(
         default=None,
         description="The arms by their names, as `left` and `right`, which become one robot, in "
         "place of `robot`. The name and `_` stand in front of the names of an arm's links, joints "

@@ -27,7 +27,6 @@ ALL_ARMS = "arms"
 RENAMED_ROOT = "robot_world"
 """New name of a root link that is named `world` in the robot's file."""
 
-
 CLOSING_SPEED = 0.075
 """Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
 
@@ -80,6 +79,7 @@ class Arm:
         gripper: Its gripper; None for an arm without one.
         controllers: Names of its ROS 2 controllers, as in `RobotDescription`.
         controller_tolerances: Tolerances of its ROS 2 controllers; None where they have none.
+        robot_joints: The movable joints of its robot, in a cell of several robots.
     """
 
     name: str
@@ -88,6 +88,7 @@ class Arm:
     gripper: Gripper | None = None
     controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     controller_tolerances: TrackingTolerances | None = None
+    robot_joints: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,6 +223,11 @@ class RobotDescription(Mechanism):
             for kind, group in groups.items()
             if group
         }
+
+    @property
+    def is_cell(self) -> bool:
+        """Whether it is made of the robots of `robots`."""
+        return any(arm.robot_joints for arm in self.arms)
 
     @property
     def recorded_tcp(self) -> str:

@@ -14,11 +14,8 @@ from harness.core.errors import ModelRefused
 from harness.core.world import WorldObject
 
 SMALLEST_MASS = 1e-14  # Smallest mass of a movable object [kg]; MuJoCo rejects less than 1e-15
-SMALLEST_MOMENT = 2e-14
-"""Smallest principal moment of a movable object [kg m^2]; MuJoCo rejects less than 1e-14."""
-
-ELEMENT = re.compile(r"Element name '(?P<name>.*)', id \d+")
-"""The part of MuJoCo's message that names what cannot be compiled."""
+SMALLEST_MOMENT = 2e-14  # Smallest principal moment [kg m^2]; MuJoCo rejects less than 1e-14
+ELEMENT = re.compile(r"Element name '(?P<name>.*)', id \d+")  # What MuJoCo's message names
 
 CALLBACKS = ("control", "passive", "act_dyn", "act_gain", "act_bias", "sensor", "contactfilter")
 """MuJoCo's callbacks that change a simulation; they act on each model of the process."""
@@ -67,15 +64,11 @@ def refuse_unusable_masses(objects: Iterable[WorldObject]) -> None:
             continue
         if not np.isfinite([obj.mass, *obj.inertia.ravel()]).all():
             raise ModelRefused(obj.name, "its mass or its inertia is larger than any number")
-        if obj.mass < SMALLEST_MASS:
-            raise ModelRefused(
-                obj.name,
-                f"a mass of {obj.mass:.3g} kg; the physics needs at least {SMALLEST_MASS:g} kg",
-            )
-        least = float(np.linalg.eigvalsh(obj.inertia)[0])
-        if least < SMALLEST_MOMENT:
-            raise ModelRefused(
-                obj.name,
-                f"its smallest principal moment of inertia is {least:.3g} kg m^2; the physics needs"
-                f" at least {SMALLEST_MOMENT:g} kg m^2",
-            )
+        moment = float(np.linalg.eigvalsh(obj.inertia)[0])
+        for what, value, least, unit in (
+            ("a mass of", obj.mass, SMALLEST_MASS, "kg"),
+            ("its smallest principal moment of inertia is", moment, SMALLEST_MOMENT, "kg m^2"),
+        ):
+            if value < least:
+                needed = f"{value:.3g} {unit}; the physics needs at least {least:g} {unit}"
+                raise ModelRefused(obj.name, f"{what} {needed}")

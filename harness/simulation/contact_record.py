@@ -15,9 +15,7 @@ from harness.core.types import FloatArray
 from harness.simulation.model import PhysicsModel
 
 ROWS = 2**16  # Samples for which the first arrays have room; what is not used takes no memory
-CONTACTS_PER_ROW = 24
-"""Contacts per sample for which the first arrays have room; more make them grow sooner."""
-
+CONTACTS_PER_ROW = 24  # Contacts for which there is room first; more make arrays grow sooner
 BLOCK = 2**17  # Contacts that are sorted at a time
 BYTES = 52  # Memory that one contact takes in the arrays
 

@@ -22,33 +22,18 @@ from harness.robot.mesh_file import hull_points
 CONTACT_SOLREF = (0.002, 8.0)
 """Time constant [s] and damping ratio of a contact.
 
-MuJoCo raises the time constant to two steps where those are longer. The friction of a contact has
-the time constant alone: an object carried on a curve creeps by half of it times its centripetal
-acceleration, except between fingers and free objects.
+The friction of a contact has the time constant alone: an object carried on a curve creeps by half
+of it times its centripetal acceleration, except between fingers and free objects.
 """
 
 CONTACT_SOLIMP = (0.0, 0.999, 0.0001, 0.5, 2.0)
 """Impedance d of a contact: at touch, when pressed, width of the change [m], its shape.
 
-MuJoCo's friction is the convex relaxation of Coulomb's: a contact that slides with velocity v is
-also pushed apart, with mu b v for b = 2 / time constant. Only its compliance (1 - d) / d times the
-force balances that. With a nearly rigid contact, d = 0.99 at touch, a box that slides faster than
-0.25 mm/s hops instead: it leaves the ground for some milliseconds, is free of friction meanwhile,
-and strikes the ground and the finger that pushes it. A contact that begins soft finds its balance
-within the width, at any speed; one narrower than 0.1 mm is too steep for a step of 1 ms. The large
-damping ratio keeps d near 1 at rest: without it, d is 0.3 there, cylinders rock by 0.01 rad/s and
-what stands on a slope creeps by 0.2 mm/s. In return, bodies that overlap part with a time constant
-of 0.25 s: an object that falls by 20 cm is 0.6 mm too deep for that long. A box of 2 kg that is
-pushed across the ground, mu 0.4 (friction needs 7.84 N), by a finger at 0.1 m/s:
-
-    d at touch, damping ratio   finger [N]       ground [N]      creep at 0.91 of the cone
-    0.99, width 1 mm, 1         0 to 55.9        0 to 172        0.002 mm/s
-    0, 0.1 mm, 1                7.80 to 8.72     19.5 to 21.1    0.18 mm/s
-    0, 0.1 mm, 4                7.70 to 9.36     19.2 to 22.8    0.03 mm/s
-    0, 0.1 mm, 8                7.69 to 9.10     19.2 to 21.9    0.01 mm/s
-    0, 0.1 mm, 16               7.68 to 9.14     19.2 to 22.4    0.003 mm/s
-
-An object sinks 0.08 mm into what it stands on.
+MuJoCo's friction also pushes apart what slides. A contact that is rigid at touch hops; one that
+begins soft finds its balance within the width, at any speed, and one narrower than 0.1 mm is too
+steep for a step of 1 ms. The large damping ratio keeps d near 1 at rest: without it cylinders rock,
+and what stands on a slope creeps. In return, bodies that overlap part with a time constant of
+0.25 s. docs/explanation/friction.md has what was measured with other values.
 """
 
 STIFF_SOLREF = (0.002, 1.0)
@@ -56,9 +41,7 @@ STIFF_SOLIMP = (0.97, 0.999, 1e-5, 0.5, 2.0)
 """The same of a contact of a free object with a finger, or with a body that has a hole.
 
 A grasp sticks and is pressed by a motor instead of a weight: it is stiffer, so that what is held
-creeps less. At 0.95 of Coulomb's limit a cylinder of 0.1 kg creeps by 0.01 mm in 3 s; with the
-values of other contacts by 1.6 mm. Walls of a hole that give way by 0.1 mm would let a peg in
-that is 0.1 mm too thick, pressed with 10 N.
+creeps less. Walls of a hole that give way by 0.1 mm would let a peg in that is too thick by that.
 """
 
 CONTACT_DIMENSIONS = 6

@@ -14,9 +14,7 @@ from harness.simulation.motors import Motors
 from harness.simulation.recording import Recording
 from harness.simulation.set_points import SetPoints, ramp
 
-GOAL_TOLERANCE = 0.004
-"""Largest position error at which the joint has reached its goal, as a share of its range."""
-
+GOAL_TOLERANCE = 0.004  # Largest position error at the goal, as a share of the joint's range
 STALL_TIME = 0.15  # Time for which the joint must be at rest to count as stalled [s]
 STALL_SPEED = 0.02  # Speed below which the joint is at rest, as a share of its closing speed
 CHECK_EVERY = 10  # Samples between two checks whether the joint reached its goal or stalled

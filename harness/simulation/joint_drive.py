@@ -70,6 +70,10 @@ class JointDrive:
         period = self.controller.period if len(self.arm) else None
         return None if period is None else max(1, round(period / self._timestep))
 
+    def whole_positions(self, positions: FloatArray) -> FloatArray:
+        """Positions of every movable joint for those of the actuated ones, shape (n,)."""
+        return self._coupling @ positions + self._offsets
+
     def weight(self, positions: FloatArray) -> FloatArray:
         """Efforts that hold the robot still at positions of every movable joint, shape (m,)."""
         still = np.zeros((1, len(positions)))
@@ -138,7 +142,7 @@ class JointDrive:
         def whole_positions(positions: FloatArray) -> FloatArray:
             actuated = measured.copy()
             actuated[arm] = positions
-            return self._coupling @ actuated + self._offsets
+            return self.whole_positions(actuated)
 
         def inertia() -> FloatArray:
             dense = self._feed_forward.inertia(whole_positions(measured[arm]))

@@ -22,6 +22,7 @@ from harness.simulation.geoms import (
     roughness,
     set_smaller_frictions,
 )
+from harness.simulation.independence import make_independent
 from harness.simulation.robot_mjcf import add_robot, link_friction
 from harness.simulation.servo import Servos, add_servos, design_servos
 from harness.simulation.step_state import allow_sleep
@@ -34,11 +35,7 @@ FRICTION_DAMPING_PER_STEP = 1.5
 MuJoCo's friction opposes the sliding velocity found at the start of a step, so a held object lags
 its gripper on a curve: with centripetal acceleration a, step h and damping b it creeps with about
 a (1 - h b) / b + a h / 2. That vanishes towards h b = 2, where velocities would oscillate for ever;
-at 1.5 an oscillation halves each step. MuJoCo gives contacts at most h b = 1, and lets only
-explicit pairs have more, for friction alone. Creep [mm] measured in two swings of a UR3e:
-
-    step 2 ms: contacts of 6 ms 4.6; pairs with 1.0, 1.5, 1.8: 2.5, 1.2, 0.8
-    step 1 ms: contacts of 2 ms 1.25; pairs with 1.5: 0.6, whatever the contact's time constant
+at 1.5 an oscillation halves each step. MuJoCo lets only explicit pairs have more than h b = 1.
 """
 
 
@@ -140,6 +137,8 @@ def _compiled(
     add_servos(spec, description, servos)
     for index, obj in enumerate(objects):
         add_object(spec, obj, obj.pose if obj.name in present else parking_pose(index))
+    if description.is_cell:
+        make_independent(spec, sum(not obj.is_static for obj in objects))
     _add_grasp_contacts(spec, description, objects)
     _add_hole_contacts(spec, objects)
     for frame in (description.tcp_link, *frames):
@@ -239,16 +238,14 @@ def _places(
         )
     names = tuple(model.body(index).name for index in range(model.nbody))
     links = set(description.link_names)
+    actuated = [i for i, joint in enumerate(description.movable_joints) if joint.mimic is None]
     return PhysicsModel(
         model,
         description,
         servos,
         np.array([joint.qposadr[0] for joint in joints], dtype=np.int64),
         np.array([joint.dofadr[0] for joint in joints], dtype=np.int64),
-        np.array(
-            [i for i, joint in enumerate(description.movable_joints) if joint.mimic is None],
-            dtype=np.int64,
-        ),
+        np.array(actuated, dtype=np.int64),
         objects,
         frames,
         names,

@@ -22,7 +22,6 @@ from harness.simulation.joint_drive import JointDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects, overlaps
 from harness.simulation.recording import Recording
-from harness.simulation.robot_mjcf import coupling
 from harness.simulation.set_points import SetPoints
 from harness.simulation.step_state import refresh
 from harness.simulation.surfaces import Surfaces
@@ -70,8 +69,6 @@ class Motors:
         for place in self.physics.objects.values():
             if place.obj.joint is not None:
                 self._data.qpos[place.qpos] = place.obj.joint.start
-        self._coupling = coupling(description)
-        self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
         self._drive = JointDrive(self.physics, self._data, gravity, timestep)
         self._command = description.start_positions()[self.physics.actuated]
         self._control = self._first_control()
@@ -79,7 +76,8 @@ class Motors:
         self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
         self.disturbance = Disturbance(self.physics, self._data)
         self.adhesion = adhesion_of(self.physics, self._data)
-        wrenches = WrenchSensors(description.wrench_sensors.values(), timestep, seed)
+        sensors, is_cell = description.wrench_sensors.values(), description.is_cell
+        wrenches = WrenchSensors(sensors, timestep, seed, is_cell=is_cell)
         self._recording = Recording(self.physics, self._data, wrenches, self.adhesion)
         self._surfaces = Surfaces(self.physics, self._data, self._recording)
         refresh(self._model, self._data)
@@ -150,7 +148,7 @@ class Motors:
 
     def commanded_positions(self) -> FloatArray:
         """The last set point in description order, mimic joints included."""
-        return self._coupling @ self._command + self._offsets
+        return self._drive.whole_positions(self._command)
 
     def hold(self, duration: float) -> None:
         """Keep the last commands for a duration in simulation time [s]."""
@@ -276,8 +274,5 @@ class Motors:
         return int(np.searchsorted(self.physics.actuated, place))
 
 
-def _silence(_message: str) -> None:
-    """Suppress MuJoCo's log file in the working folder; warnings are read from its data."""
-
-
-mujoco.set_mju_user_warning(_silence)
+# No log file of MuJoCo's in the working folder: its warnings are read from its data.
+mujoco.set_mju_user_warning(lambda _message: None)

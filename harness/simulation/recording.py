@@ -23,9 +23,7 @@ from harness.simulation.model import ObjectPlace, PhysicsModel
 from harness.simulation.step_state import refresh
 from harness.simulation.wrench_sensors import WrenchSensors
 
-MOST_BYTES = 2**30
-"""Largest record of states, sensors and contacts; judging it takes about four times as much."""
-
+MOST_BYTES = 2**30  # Largest record; judging it takes about four times as much
 LOOK_BACK = 25  # Number of samples before a failure in which contacts are searched
 _DIVERGED = (mujoco.mjtWarning.mjWARN_BADQACC, mujoco.mjtWarning.mjWARN_BADCTRL)
 
@@ -33,10 +31,8 @@ _DIVERGED = (mujoco.mjtWarning.mjWARN_BADQACC, mujoco.mjtWarning.mjWARN_BADCTRL)
 class Recording:
     """The samples of a run: row i is the state at `i * timestep` and the forces in it.
 
-    The last row is always the current state of the physics. A plain loop with copies into prepared
-    arrays costs 8 % over bare calls of `mj_step`; `mujoco.rollout` reports which bodies touch only
-    with a contact sensor for each pair. A step is made of the two calls that `mj_step` consists of,
-    because it computes forces a second time, without their velocities, where bodies fall asleep.
+    The last row is always the current state of the physics. A step is made of the two calls that
+    `mj_step` consists of, because that computes forces a second time where bodies fall asleep.
 
     Attributes:
         longest: The most simulated time of the run [s].

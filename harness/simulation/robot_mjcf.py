@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import combinations
 
 import mujoco
@@ -16,9 +17,9 @@ from harness.robot.description import RobotDescription
 from harness.robot.mechanism import Inertial, Joint
 from harness.robot.tree import excluded_contacts
 from harness.simulation.geoms import add_collision_geom
+from harness.simulation.independence import add_idle_joints
 
-LINK_FRICTION = Friction()
-"""Surface of robot links other than the finger pads."""
+LINK_FRICTION = Friction()  # Surface of robot links other than the finger pads
 
 TRIANGLE_MARGIN = 1e-9
 """Share of the largest principal moment by which the sum of the two others exceeds it.
@@ -32,9 +33,7 @@ MIMIC_SOLREF = (0.01, 1.0)
 
 Slower than a contact: at two steps, fingers that press on an object chatter from step to step.
 """
-
-MIMIC_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
-"""Impedance of a mimic coupling: nearly rigid, so that both fingers press with the same force."""
+MIMIC_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)  # Nearly rigid: both fingers press with one force
 
 
 def link_friction(description: RobotDescription, link: str) -> Friction:
@@ -51,7 +50,7 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription) -> None:
     Args:
         spec: A specification in radians; `world` is its world body.
     """
-    bodies = {"world": spec.worldbody}
+    bodies, idle = {"world": spec.worldbody}, list[tuple[mujoco.MjsBody, mujoco.MjsBody]]()
     links = {link.name: link for link in description.links}
     for joint in description.joints:
         link = links[joint.child]
@@ -65,6 +64,10 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription) -> None:
         for shape in convex_shapes(link.collisions):
             add_collision_geom(spec, body, shape)
         bodies[link.name] = body
+        if joint.parent == "world" and description.is_cell:
+            idle.append((spec.worldbody.add_body(name=f"idle joints of {link.name}"), body))
+    for spare, body in idle:
+        add_idle_joints(spare, len(body.find_all("joint")))
     for joint in description.joints:
         if joint.mimic is not None:
             _couple(spec, joint)
@@ -107,6 +110,7 @@ def joint_range(description: RobotDescription, joint: Joint) -> tuple[float, flo
     return lower, upper
 
 
+@cache
 def coupling(description: RobotDescription) -> FloatArray:
     """Velocities of all movable joints by those of the actuated ones, shape (n, actuated)."""
     actuated = [joint.name for joint in description.movable_joints if joint.mimic is None]
@@ -134,12 +138,10 @@ def _add_joint(body: mujoco.MjsBody, joint: Joint, limits: tuple[float, float]) 
 def _couple(spec: mujoco.MjSpec, joint: Joint) -> None:
     assert joint.mimic is not None
     equality = spec.add_equality(
-        type=mujoco.mjtEq.mjEQ_JOINT,
-        name1=joint.name,
-        name2=joint.mimic.joint,
-        objtype=mujoco.mjtObj.mjOBJ_JOINT,
-        data=[joint.mimic.offset, joint.mimic.multiplier] + 10 * [0.0],
+        type=mujoco.mjtEq.mjEQ_JOINT, name1=joint.name, name2=joint.mimic.joint
     )
+    equality.objtype = mujoco.mjtObj.mjOBJ_JOINT
+    equality.data = [joint.mimic.offset, joint.mimic.multiplier] + 10 * [0.0]
     equality.solref = MIMIC_SOLREF
     equality.solimp = MIMIC_SOLIMP
 

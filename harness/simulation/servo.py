@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.ports.joint_control import LinkMotion
 from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model
@@ -34,10 +34,8 @@ ROTOR_SHARE = 0.03
 """Rotor inertia of a joint without an effort limit, as a share of the largest inertia that a joint
 of its kind accelerates: without it, the wrist of a light arm yields to what its gripper holds."""
 
-GRIPPER_SATURATION = 0.0025
-"""Lag of a gripper's joint at its default grip effort, as a share of its range."""
+GRIPPER_SATURATION = 0.0025  # Lag of a gripper at its default effort, as a share of its range
 
-SHORTEST = 64  # Samples of a motion whose efforts are worth looking up
 GRIPPER_BANDWIDTH_PER_STEP = 0.5
 """BANDWIDTH_PER_STEP of a gripper; its saturation gives the stiffness, and so its rotor inertia."""
 
@@ -85,8 +83,11 @@ def design_servos(description: RobotDescription, timestep: float) -> Servos:
     effort = np.array([joint.effort for joint in actuated])
     rotor = ROTOR_INERTIA_PER_EFFORT * np.where(np.isfinite(effort), effort, 0.0)
     slides = np.array([joint.kind == "prismatic" for joint in actuated])
-    for kind in (slides, ~slides):
-        rotor[kind & ~np.isfinite(effort)] = ROTOR_SHARE * inertia[kind].max(initial=0.0)
+    robots = [arm.robot_joints for arm in description.arms] if description.is_cell else []
+    for names in robots or [description.joint_names]:
+        own = np.array([joint.name in names for joint in actuated])
+        for kind in (own & slides, own & ~slides):
+            rotor[kind & ~np.isfinite(effort)] = ROTOR_SHARE * inertia[kind].max(initial=0.0)
     frequency = np.full(len(actuated), BANDWIDTH_PER_STEP / timestep)
     for gripper in description.grippers:
         index = [joint.name for joint in actuated].index(gripper.joint)
@@ -107,11 +108,34 @@ def _reflected_inertia(
     joints = [model.joint(name) for name in description.joint_names]
     data.qpos[[joint.qposadr[0] for joint in joints]] = positions
     mujoco.mj_forward(model, data)
+    dofs = np.array([joint.dofadr[0] for joint in joints], dtype=np.int64)
+    return np.diag(_inertia(model, data, dofs, description)).copy()
+
+
+def _inertia(
+    model: mujoco.MjModel, data: mujoco.MjData, dofs: IntArray, robot: RobotDescription
+) -> FloatArray:
+    """The mass matrix in the actuated joints, shape (m, m)."""
     dense = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, dense)
-    order = [joint.dofadr[0] for joint in joints]
-    matrix = coupling(description)
-    return np.diag(matrix.T @ dense[np.ix_(order, order)] @ matrix).copy()
+    ordered, matrix = dense[np.ix_(dofs, dofs)], coupling(robot)
+    if not robot.is_cell:
+        return matrix.T @ ordered @ matrix
+    return _actuated(robot, _actuated(robot, ordered).T)
+
+
+def _actuated(robot: RobotDescription, values: FloatArray) -> FloatArray:
+    """Values of all movable joints, summed over those that move together, shape (N, m).
+
+    In a cell they are added one by one: how a product is rounded depends on the matrix's size.
+    """
+    matrix = coupling(robot)
+    if not robot.is_cell:
+        return values @ matrix
+    sums = np.zeros((len(values), matrix.shape[1]))
+    for row, column in np.argwhere(matrix):
+        sums[:, column] += values[:, row] * matrix[row, column]
+    return sums
 
 
 class FeedForward:
@@ -132,8 +156,8 @@ class FeedForward:
         self._data = mujoco.MjData(self._model)
         joints = [self._model.joint(name) for name in description.joint_names]
         self._positions = np.array([joint.qposadr[0] for joint in joints], dtype=np.intp)
-        self._velocities = np.array([joint.dofadr[0] for joint in joints], dtype=np.intp)
-        self._coupling = coupling(description)
+        self._velocities = np.array([joint.dofadr[0] for joint in joints], dtype=np.int64)
+        self._robot = description
         self._bodies = {self._model.body(index).name: index for index in range(self._model.nbody)}
 
     def __call__(
@@ -150,20 +174,13 @@ class FeedForward:
         qpos[:, self._positions] = positions
         qvel[:, self._velocities] = velocities
         qacc[:, self._velocities] = accelerations
-        inverse, at, speed, rate, effort = (
-            mujoco.mj_inverse,
-            data.qpos,
-            data.qvel,
-            data.qacc,
-            data.qfrc_inverse,
-        )
+        at, speed, rate, effort = data.qpos, data.qvel, data.qacc, data.qfrc_inverse
+        inverse = mujoco.mj_inverse
         for row in range(len(positions)):
-            at[:] = qpos[row]
-            speed[:] = qvel[row]
-            rate[:] = qacc[row]
+            at[:], speed[:], rate[:] = qpos[row], qvel[row], qacc[row]
             inverse(model, data)
             efforts[row] = effort
-        return efforts[:, self._velocities] @ self._coupling
+        return _actuated(self._robot, efforts[:, self._velocities])
 
     def link_motion(self, link: str, positions: FloatArray) -> LinkMotion:
         """Where a link is at positions of all movable joints, and how actuated ones move it."""
@@ -174,18 +191,15 @@ class FeedForward:
         body, jacobian = self._bodies[link], np.empty((6, model.nv))
         mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
         pose = SE3(data.xmat[body].reshape(3, 3).copy(), data.xpos[body].copy())
-        return LinkMotion(pose, jacobian[:, self._velocities] @ self._coupling)
+        return LinkMotion(pose, _actuated(self._robot, jacobian[:, self._velocities]))
 
     def inertia(self, positions: FloatArray) -> FloatArray:
         """The mass matrix in the actuated joints at positions of every movable joint, (m, m)."""
         model, data = self._model, self._data
         data.qpos[self._positions] = positions
-        dense = np.zeros((model.nv, model.nv))
         for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_crb):
             stage(model, data)
-        mujoco.mj_fullM(model, data, dense)
-        ordered = dense[np.ix_(self._velocities, self._velocities)]
-        return self._coupling.T @ ordered @ self._coupling
+        return _inertia(model, data, self._velocities, self._robot)
 
 
 def set_rotor_inertia(spec: mujoco.MjSpec, description: RobotDescription, servos: Servos) -> None:

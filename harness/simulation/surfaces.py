@@ -14,8 +14,6 @@ from harness.simulation.model import PhysicsModel
 from harness.simulation.recording import Recording
 from harness.simulation.step_state import wake
 
-Log = list[tuple[int, SurfaceMotion]]
-
 
 class Surfaces:
     """The motions of belts and turntables, with the history that reconstructs every sample.
@@ -26,7 +24,7 @@ class Surfaces:
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData, recording: Recording) -> None:
         self._physics, self._data, self._recording = physics, data, recording
-        self.log = dict[str, Log]()
+        self.log = dict[str, list[tuple[int, SurfaceMotion]]]()
         for name, place in physics.objects.items():
             if place.obj.surface_motion is not None:
                 self.log[name] = [(0, place.obj.surface_motion)]

@@ -93,11 +93,7 @@ class TrajectoryTracking(Motors):
     def _abort(
         self, row: int, errors: FloatArray, joints: IntArray, tolerance: float, message: str
     ) -> None:
-        """Hold the arm at its position and raise the failure.
-
-        Raises:
-            StepFailed: CONTROL_FAILED, always.
-        """
+        """Hold the arm at its position and raise CONTROL_FAILED."""
         worst = int(np.argmax(errors))
         joint = self.description.movable_joints[int(joints[worst])]
         unit = joint.position_unit
@@ -126,7 +122,5 @@ class TrajectoryTracking(Motors):
 
 def _contact_clause(contacts: Mapping[BodyPair, float]) -> str:
     """The strongest contacts as a clause of a failure's message."""
-    if not contacts:
-        return "it touches nothing"
     parts = [f"{a} presses on {b} with {force:.3g} N" for (a, b), force in contacts.items()]
-    return ", ".join(parts[:3])
+    return ", ".join(parts[:3]) or "it touches nothing"

@@ -67,10 +67,9 @@ def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3) -> None:
 
 
 def _add_joint(spec: mujoco.MjSpec, body: mujoco.MjsBody, joint: ObjectJoint) -> None:
-    kinds = {"hinge": mujoco.mjtJoint.mjJNT_HINGE, "slide": mujoco.mjtJoint.mjJNT_SLIDE}
     body.add_joint(
         name=body.name,
-        type=kinds[joint.kind],
+        type=getattr(mujoco.mjtJoint, f"mjJNT_{joint.kind.upper()}"),
         axis=joint.axis,
         pos=joint.point,
         limited=True,

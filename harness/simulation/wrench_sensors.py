@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from zlib import crc32
 
 import mujoco
 import numpy as np
@@ -42,12 +43,14 @@ class WrenchSensors:
     """The readings of all sensors, which follow from what MuJoCo measures at each sample.
 
     A reading does not depend on when it is looked at: the noise of a sensor is one sequence from
-    the run's seed and the sensor's place, drawn in blocks, and each reading has its row of it.
+    the run's seed and its place, or its name in a cell, drawn in blocks; a reading has a row of it.
     """
 
-    def __init__(self, sensors: Iterable[WrenchSensor], timestep: float, seed: int) -> None:
+    def __init__(
+        self, sensors: Iterable[WrenchSensor], timestep: float, seed: int, *, is_cell: bool = False
+    ) -> None:
         self.sensors = {sensor.name: sensor for sensor in sensors}
-        self._timestep, self._seed = timestep, seed
+        self._timestep, self._seed, self._is_cell = timestep, seed, is_cell
         self._tares: list[Tare] = []
 
     def rewind(self, count: int) -> None:
@@ -84,18 +87,19 @@ class WrenchSensors:
         wrenches = -measured[rows, column : column + 6]  # MuJoCo has the force of the link before
         deviations = np.repeat([sensor.force_noise, sensor.torque_noise], 3)
         if deviations.any():
-            wrenches += deviations * self._noise(column, numbers)
+            place = crc32(name.encode()) if self._is_cell else column
+            wrenches += deviations * self._noise(place, numbers)
         zero = np.zeros_like(wrenches)
         for tare in self._tares if tared else ():
             if tare.sensor == name:
                 zero[max(0, tare.row - first) :] = tare.zero
         return wrenches - zero
 
-    def _noise(self, column: int, numbers: IntArray) -> FloatArray:
+    def _noise(self, place: int, numbers: IntArray) -> FloatArray:
         """Normally distributed numbers of readings, whose numbers ascend, shape (n, 6)."""
         first, last = int(numbers[0]) // BLOCK, int(numbers[-1]) // BLOCK
         blocks = [
-            np.random.default_rng([self._seed, column, block]).standard_normal((BLOCK, 6))
+            np.random.default_rng([self._seed, place, block]).standard_normal((BLOCK, 6))
             for block in range(first, last + 1)
         ]
         return np.concatenate(blocks)[numbers - first * BLOCK]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 from harness.core.errors import RobotError, RobotOptionError
 from harness.robot.compose import refuse_clashes, robot_of_tree
@@ -77,17 +77,17 @@ def joined_arms(robots: Mapping[str, RobotDescription]) -> RobotDescription:
                 robot.gripper,
                 _in_namespace(name, own.controller_names),
                 robot.controller_tolerances,
+                robot.joint_names,
             )
             for (name, own), robot in zip(robots.items(), renamed, strict=True)
         ),
+        default_arm=next(iter(robots)) if len(robots) == 1 else "",
     )
 
 
-def _in_namespace(
-    arm: str, controllers: Mapping[str, tuple[str, ...]]
-) -> Mapping[str, tuple[str, ...]]:
+def _in_namespace(arm: str, all_of: Mapping[str, tuple[str, ...]]) -> Mapping[str, tuple[str, ...]]:
     """Names of controllers below the name of their arm."""
-    return {kind: tuple(f"{arm}/{own}" for own in names) for kind, names in controllers.items()}
+    return {kind: tuple(f"{arm}/{own}" for own in names) for kind, names in all_of.items()}
 
 
 def _renamed(arm: str, robot: RobotDescription) -> RobotDescription:
@@ -203,8 +203,4 @@ def _joined_srdf(parts: list[Srdf], arms: list[str], source: str) -> Srdf:
 
 def _widest(tolerances: list[TrackingTolerances]) -> TrackingTolerances:
     """The tolerances with which the joints of every arm are tracked."""
-    return TrackingTolerances(
-        max(each.trajectory for each in tolerances),
-        max(each.goal for each in tolerances),
-        max(each.goal_time for each in tolerances),
-    )
+    return TrackingTolerances(*map(max, zip(*map(astuple, tolerances), strict=True)))
