@@ -26,9 +26,8 @@ from harness.core.geometry import (
 )
 from harness.core.pose_arrays import rotate, rotations_of, times_each, turn_between
 from harness.core.types import BoolArray, FloatArray
-from harness.judging.poses import put_samples
 from harness.judging.temporal import first_within, trailing_max
-from harness.judging.window import object_record
+from harness.judging.window import object_record, put_samples
 from harness.recording.run import TIME_RESOLUTION, ObjectRecord, Run
 
 SIGNS = np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T

@@ -15,9 +15,9 @@ from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import balls_of
 from harness.judging.facts import fact
 from harness.judging.hands import every_hand_link, gripper_of, own_links
-from harness.judging.poses import arrivals, present, put_samples
+from harness.judging.poses import arrivals, present
 from harness.judging.temporal import last_within, trailing_max, without_gaps
-from harness.judging.window import NotObservable, object_record
+from harness.judging.window import NotObservable, object_record, put_samples
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
 from harness.robot.end_effector import seal_words

@@ -26,9 +26,9 @@ from harness.judging.body_motion import middles
 from harness.judging.contacts import force_between
 from harness.judging.hands import each_hand, gripper_of
 from harness.judging.hold import held_by_fingers, recent_mean, weight_of
-from harness.judging.poses import object_poses, put_samples
+from harness.judging.poses import object_poses
 from harness.judging.support import riders
-from harness.judging.window import NotObservable, object_record
+from harness.judging.window import NotObservable, object_record, put_samples
 from harness.recording.run import Run
 
 SPAN = 0.05  # [s], over which a force is averaged: longer than a blow, shorter than a motion

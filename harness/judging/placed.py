@@ -38,11 +38,7 @@ class PlacedExpectation:
 
     @classmethod
     def of(cls, spec: ExpectationFields, step: str, line: int) -> PlacedExpectation:
-        """An expectation of a file with its place.
-
-        Raises:
-            TypeError: The class of its word is no expectation.
-        """
+        """An expectation of a file with its place."""
         return cls(as_expectation(spec), step, line)
 
 

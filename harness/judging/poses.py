@@ -7,7 +7,7 @@ import numpy as np
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging.temporal import TIME_RESOLUTION, episodes
-from harness.judging.window import NotObservable, object_record
+from harness.judging.window import NotObservable, object_record, put_samples
 from harness.language.step import step_class
 from harness.recording.run import Run
 from harness.recording.step_results import SceneChange
@@ -35,11 +35,7 @@ def link_poses(run: Run, link: str) -> FloatArray:
 
 
 def tcp_poses(run: Run) -> FloatArray:
-    """T_world_tcp of the selected arm, shape (N, 7).
-
-    Raises:
-        NotObservable: It was not recorded.
-    """
+    """T_world_tcp of the selected arm, shape (N, 7)."""
     return link_poses(run, run.robot.tcp_link)
 
 
@@ -99,16 +95,6 @@ def frame_present(run: Run, frame: str) -> BoolArray:
     if any(record.name == frame for record in run.objects):
         return present(run, frame)
     return np.ones(len(run.signals.times), dtype=bool)
-
-
-def put_samples(run: Run, name: str) -> IntArray:
-    """Samples at which a step has put an object somewhere else, ascending; none of a link.
-
-    Nothing moved from the pose before to this one: between the two there is no speed and no
-    distance.
-    """
-    records = [record for record in run.objects if record.name == name]
-    return records[0].put_samples(run.signals.times) if records else np.zeros(0, dtype=np.int64)
 
 
 def arrivals(run: Run, name: str) -> IntArray:

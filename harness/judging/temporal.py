@@ -190,11 +190,7 @@ def eventually(
 def always(
     values: FloatArray, times: FloatArray, hold: float | None = None, within: float | None = None
 ) -> Decision:
-    """The worst sample; with `within`, only from that time after the start on.
-
-    Raises:
-        TooShort: Less than `hold` seconds are left to judge.
-    """
+    """The worst sample; with `within`, only from that time after the start on."""
     begin = 0
     if within is not None:
         begin = _last_before(times, float(times[0]) + within)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.step_results import SceneChange
@@ -168,6 +168,16 @@ def object_record(run: Run, name: str) -> ObjectRecord:
         if record.name == name:
             return record
     raise NotObservable(f"there is no object '{name}' in this run")
+
+
+def put_samples(run: Run, name: str) -> IntArray:
+    """Samples at which a step has put an object somewhere else, ascending; none of a link.
+
+    Nothing moved from the pose before to this one: between the two there is no speed and no
+    distance.
+    """
+    records = [record for record in run.objects if record.name == name]
+    return records[0].put_samples(run.signals.times) if records else np.zeros(0, dtype=np.int64)
 
 
 def refuse_unrecorded_steps(run: Run) -> None:

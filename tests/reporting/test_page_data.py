@@ -111,6 +111,24 @@ def test_thinning_keeps_every_extreme_and_invents_nothing(columns, stretches):
         np.testing.assert_array_equal(kept[inside], column[places[inside]])
 
 
+def test_the_rise_is_that_of_the_lowest_point_since_it_appeared_or_was_put():
+    """A cube of 40 mm turns onto its edge about its middle, and is put 0.5 m higher."""
+    quarter = np.pi / 8
+    poses = at(200, (0.0, 0.0, 0.02))
+    poses[50:, 3:] = (np.cos(quarter), np.sin(quarter), 0.0, 0.0)
+    poses[100:, 2] += 0.5
+    poses[150:, 2] += 0.01
+    poses[:20] = np.nan
+    box = replace(thing("box"), present=((0.2, 0.995), (0.995, 9.0)))
+    groups = {
+        each.id: each for each in groups_of(make_run(objects=(box,), object_poses={"box": poses}))
+    }
+    rise = groups["height"].series["box"]
+    sunk = 20 - 20 * np.sqrt(2)
+    assert np.isnan(rise[:20]).all()
+    assert rise[[20, 60, 99, 100, 160]] == pytest.approx([0, sunk, sunk, 0, 10])
+
+
 def test_plotted_values_are_the_recorded_ones():
     run = lift_run()
     head, buffer = unpacked(page_html(stored(run)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.core.pose_arrays import compose, turn_between
 from harness.core.types import FloatArray, Pair
+from harness.judging.body_motion import lowest_points
 from harness.recording.link_poses import replayed_link_poses, tcp_tracks
 from harness.recording.run import Run
 from harness.recording.touched import touched_objects
@@ -103,7 +104,7 @@ def slip(run: Run) -> Group:
         stands_for = "" if held.object == held.represents else f" ({held.represents})"
         name = held.object + stands_for
         series[name] = np.fmax(series[name], distance) if name in series else distance
-    title = "held object, off its place in the plan"
+    title = "held object, off its plan"
     return Group("slip", title, "mm", series, least=0.1, measure="slip in the hand", factor=1e3)
 
 
@@ -146,9 +147,15 @@ def _moving(run: Run) -> dict[str, FloatArray]:
 
 
 def heights(run: Run) -> Group:
-    """How far the frames of objects rose; `lifted` judges the lowest point of a body."""
-    series = {name: 1e3 * (poses[:, 2] - _first(poses)[2]) for name, poses in _moving(run).items()}
-    title = "rise of the object's frame (verdicts: of its lowest point)"
+    """How far the lowest points of objects rose since they appeared or were put: as judged."""
+    series, records = dict[str, FloatArray](), {obj.name: obj for obj in run.objects}
+    for name, poses in _moving(run).items():
+        lowest = 1e3 * lowest_points(records[name], poses)
+        begins = np.diff(np.isfinite(lowest).astype(np.int8), prepend=0) > 0
+        begins[records[name].put_samples(run.signals.times)] = True
+        start = np.maximum.accumulate(np.where(begins, np.arange(len(lowest)), 0))
+        series[name] = lowest - lowest[start]
+    title = "rise of the lowest point"
     return Group("height", title, "mm", series, measure="height gained", factor=1e3)
 
 
