@@ -15,7 +15,7 @@ from harness.judging.margins import MarginSignal, against
 from harness.judging.temporal import Decision, TooShort, later, longest_hold, with_future
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.language.expectation import PredicateFields, TemporalFields
-from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning
+from harness.recording.verdict import Measure, Observed, Verdict, VerdictStatus, VerdictWarning
 
 ALREADY_TRUE = "already true at the start"  # the warning that nothing had to change
 
@@ -187,8 +187,9 @@ def _verdict(
             raise NotReached("what it is about was not there for that long")
         time = window.time(index)
         return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
-    if terms.word == "eventually" and terms.hold is not None and not (values >= 0).any():
-        index = _nearest(values, times, margins.progress)
+    lacks = 0.0
+    if terms.word == "eventually" and terms.hold is not None and not decision.holds:
+        index, lacks = _revealing(terms.hold, values, times, margins.progress, index)
     evidence = margins.evidence(index)
     time = window.time(index) if evidence.time is None else evidence.time
     margin, unit = decision.value, margins.unit
@@ -199,6 +200,9 @@ def _verdict(
     measures = tuple(evidence.measures)
     if terms.word == "never" or terms.is_opposed:
         measures = against(measures, is_passed=decision.holds)
+    if lacks and terms.hold is not None:
+        margin, unit, held = -lacks, "s", terms.hold - lacks
+        measures += (Measure("time without a break", held, terms.hold, ">=", "s", time),)
     return Verdict(
         "",
         status,
@@ -295,10 +299,17 @@ def _ended_before(terms: Terms, times: FloatArray) -> str:
     )
 
 
-def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:
-    """The sample that came nearest to fulfilling what never held."""
+def _revealing(
+    hold: float, values: FloatArray, times: FloatArray, progress: FloatArray | None, index: int
+) -> tuple[int, float]:
+    """Where the longest hold broke or began too late, and the time it lacks [s]; 0 of others."""
     known = np.where(np.isnan(values), -np.inf, values)
-    return temporal.eventually(known, times, progress=progress).index
+    spans = temporal.episodes(known >= 0)
+    if not spans:
+        return temporal.eventually(known, times, progress=progress).index, 0.0
+    start, stop = max(spans, key=lambda span: times[span[1] - 1] - times[span[0]])
+    edge, lacks = stop if stop < len(times) else start - 1, hold - times[stop - 1] + times[start]
+    return (edge, float(lacks)) if lacks > 0 and np.isfinite(known[edge]) else (index, 0.0)
 
 
 def too_short(terms: Terms, times: FloatArray) -> Verdict:

@@ -34,7 +34,7 @@ from harness.judging.hold import (
 )
 from harness.judging.margins import Evidence, MarginSignal, measured
 from harness.judging.poses import object_poses, present, start_poses
-from harness.judging.support import riders
+from harness.judging.support import SINKING, riders
 from harness.judging.temporal import TIME_RESOLUTION
 from harness.judging.window import Window, object_record
 from harness.language.base import Flag, PositiveLength
@@ -90,7 +90,8 @@ class Lifted(ArmPredicate, ObjectPredicate):
         """Height that the hand raised the object above its start, less the required height [m].
 
         Where the gripper does not hold it, or anything but the gripper and what rests on it touches
-        it, its height counts for nothing: the margin there is `-above`, less if it has sunk.
+        it, its height counts for nothing: the margin there is `-above`, less if it has sunk by more
+        than a soft contact gives way.
         """
         run, name = window.run, self.object
         gripper = gripper_of(run)
@@ -110,7 +111,7 @@ class Lifted(ArmPredicate, ObjectPredicate):
         hold = _Hold(run, name, cradled_too=self.cradled)
         untouched = ~np.any([np.zeros(len(rise)), *(f > TOUCH_FORCE for f in others.values())], 0)
         raised = np.where(hold.is_steady & untouched, np.minimum(rise, hold.raised), 0.0)
-        counted = np.minimum(rise, raised)
+        counted = np.minimum(np.where(rise < -SINKING, rise, np.maximum(rise, 0.0)), raised)
         values = np.where(unknown, np.nan, counted - self.above)
 
         def evidence(index: int) -> Evidence:
@@ -144,7 +145,9 @@ class Lifted(ArmPredicate, ObjectPredicate):
             ]
             return Evidence(text, tuple(measures))
 
-        return MarginSignal(window.cut(values), "m", evidence, progress=window.cut(rise))
+        held = np.where(raised > 0, 0.0, np.minimum(hold.duration, 1.0))
+        progress = rise + SINKING * held  # of what was not raised its longest hold counts
+        return MarginSignal(window.cut(values), "m", evidence, progress=window.cut(progress))
 
 
 class _Hold:
@@ -159,12 +162,12 @@ class _Hold:
     def __init__(self, run: Run, name: str, *, cradled_too: bool) -> None:
         self._run, self._name = run, name
         self.held = _touched_by_hand(run, name) if cradled_too else held_by_fingers(run, name)
-        self._duration = held_for(run, self.held)
+        self.duration = held_for(run, self.held)
         self._carried = carried_weight(run, name)
         self._least = CARRIED_SHARE * weight_of(run, name)
         self._moved, self._turned = moves_in_hand(run, name)
         self.raised = raised_by_hand(run, name, self.held)
-        self.is_steady = self.held & (self._duration >= HOLD_TIME - TIME_RESOLUTION)
+        self.is_steady = self.held & (self.duration >= HOLD_TIME - TIME_RESOLUTION)
         self.is_steady &= (self._moved <= STEADY) & (self._turned <= STEADY_TURN)
         if self._carried is not None:
             self.is_steady &= self._carried >= self._least
@@ -177,7 +180,7 @@ class _Hold:
             return f"{name} lies on the fingers, which do not press it" if lies else (
                 f"nothing holds {name}{_seal(self._run, name, sample)}"
             ), []
-        duration, moved = float(self._duration[sample]), float(self._moved[sample])
+        duration, moved = float(self.duration[sample]), float(self._moved[sample])
         if duration < HOLD_TIME - TIME_RESOLUTION:
             pressed, least = amounts(duration, HOLD_TIME, "s")
             return f"pressed for {pressed} so far, a grasp takes {least}", [
