@@ -107,8 +107,22 @@ def test_the_headline_says_what_turned_its_cause_and_what_moved(
             "all => all.map((each) => each.ariaLabel)"
         ) == ["passed", "failed"]
         assert [*turned.locator("td").all_inner_texts()][2].endswith("9.00 s")
+        [step] = page.locator("#steps .step.differs").all_inner_texts()
+        assert "passed → failed" in step, "the step in which it was missed"
     else:
         assert page.input_value(".plot select >> nth=0") == "apart"
+
+
+def test_headline_mark_and_key_have_the_time_at_which_people_see_a_difference(page, folders):
+    since = float(re.search(r"From t = ([\d.]+) s", page.inner_text("#headline"))[1])
+    page.keyboard.press("n")
+    assert float(page.get_attribute("#track", "aria-valuenow")) == pytest.approx(since, abs=6e-3)
+    assert page.get_attribute(".mark", "title").startswith("the runs come apart")
+    links = page.locator("section:has(h3:text-is('Where they part')) .link").all_inner_texts()
+    assert f"is elsewhere from t = {since:.2f} s on" in links[0]
+    assert links[-1].startswith("numerically apart, first in step turn")
+    first = compare(*map(read_run, folders)).first_difference
+    assert first.time < since
 
 
 def test_steps_are_aligned_and_a_new_one_stands_alone(page):

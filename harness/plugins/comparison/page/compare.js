@@ -31,7 +31,9 @@ async function start() {
   const sentences = headline(facts, runs, verdicts, apart);
   const alignment = new Alignment(runs[0].steps, runs[1].steps, pairs, runs.map(({ duration }) => duration));
   const clock = new Clock(alignment.duration);
-  const timeline = makeBothRows(runs, alignment, facts.parting);
+  const since = Math.min(...apart.series().map(({ name }) => apart.since(name)));
+  const parting = Number.isFinite(since) ? { time: since, text: "the runs come apart", status: "failed" } : facts.parting && { ...facts.parting, text: "numerically apart", status: "not reached" };
+  const timeline = makeBothRows(runs, alignment, parting);
   const bands = runs[0].steps.filter(isLeaf).map(({ start, end, band }) => ({ start, end, tone: band }));
   const plots = TwoPlots.of(payloads, clock, bands, alignment, apart, verdicts);
   const scene = makeTwoScenes(payloads, alignment);
@@ -39,11 +41,11 @@ async function start() {
   const seek = (time) => clock.seek(time);
   showHeadline(sentences, seek);
   makeTabs([
-    { id: "differences", title: "Differences", content: differencesView(facts, verdicts, { seek, verdict: selectVerdict }) },
+    { id: "differences", title: "Differences", content: differencesView(facts, verdicts, apart, { seek, verdict: selectVerdict }) },
     { id: "first", title: "Setup of A", content: pairTable(runs[0].environment) },
     { id: "second", title: "Setup of B", content: pairTable(runs[1].environment) },
   ]);
-  makeTimeline(timeline.run, clock, { step: () => {}, verdict: () => seek(facts.parting.time) });
+  makeTimeline(timeline.run, clock, { step: () => {}, verdict: () => seek(parting.time) });
   const drawFilm = scene ? makeFilm(timeline.run.run, clock, drawAt) : () => {};
   new Address(clock);
   clock.onTime((time) => {
@@ -78,8 +80,7 @@ async function start() {
   /** Where the other verdict was decided, once things are apart; else where they are farthest apart. */
   function opens() {
     const [{ time }] = sentences;
-    const since = Math.min(...apart.series().map(({ name }) => apart.since(name)));
-    return time !== null && time >= since ? time : (facts.farthest[0] ?? facts.parting)?.time ?? 0;
+    return time !== null && time >= since ? time : (facts.farthest[0] ?? parting)?.time ?? 0;
   }
 
   function nextStep(direction) {
@@ -112,7 +113,7 @@ async function start() {
   }
   makeControls({ clock, scene, plots, drawFilm });
   if (scene) makeSides({ ...scene, follows: false, toolPosition: () => runs[0].focus.points[0] }, () => clock.time, "comparison", false);
-  listenToKeys(clock, { nextStep, nextFailure: () => facts.parting && seek(facts.parting.time) });
+  listenToKeys(clock, { nextStep, nextFailure: () => parting && seek(parting.time) });
   const place = readAddress(location.hash);
   seek(place.time ?? opens());
   keepDrawing(clock, scene);
@@ -127,13 +128,13 @@ function line(name, run, time) {
   return `${name}  t ${Math.min(time, run.duration).toFixed(3)} s  ${step?.summary ?? ""}`;
 }
 
-/** The timeline's rows: steps of the first run above those of the second, and a mark where they part. */
+/** The timeline's rows: steps of the first run above those of the second, and a mark where they part by what people see. */
 function makeBothRows(runs, alignment, parting) {
   const rows = runs.map(({ steps }, depth) => steps.filter(isLeaf).map((step) => ({ ...step, depth, own: step })));
   const place = () => {
     for (const step of rows[1]) Object.assign(step, { start: alignment.onClock(step.own.start), end: alignment.onClock(step.own.end) });
   };
-  const verdicts = parting ? [{ time: parting.time, status: "failed", text: "the runs part", used: null }] : [];
+  const verdicts = parting ? [{ ...parting, used: null }] : [];
   return { place, run: { run: { steps: rows.flat(), verdicts } } };
 }
 

@@ -1,14 +1,17 @@
 // What differs: the file, the verdicts, where the runs part, and the rest.
 
 import { element } from "./dom.js";
+import { seconds } from "./units.js";
 import { verdictTable } from "./verdict_table.js";
 
 const SHOWN_ABOVE = ["outcome", "verdict", "margin"]; // in the headline, and in the table of verdicts
 const OPEN = ["scenario", "robot", "seed"]; // what most often is the cause
 
-/** @param {any} facts of the comparison @param {import("./verdict_table.js").VerdictPair[]} verdicts @param {{seek: (time: number) => void, verdict: (pair: any) => void}} select @returns {HTMLElement} */
-export function differencesView(facts, verdicts, select) {
-  const moments = [facts.parting, ...facts.farthest].filter(Boolean);
+/** @param {any} facts of the comparison @param {import("./verdict_table.js").VerdictPair[]} verdicts @param {import("./apart.js").Apart} apart @param {{seek: (time: number) => void, verdict: (pair: any) => void}} select @returns {HTMLElement} */
+export function differencesView(facts, verdicts, apart, select) {
+  const seen = apart.series().map(({ name }) => ({ time: apart.since(name), text: `${name} is elsewhere from t = ${seconds(apart.since(name))} on` }));
+  const numerical = facts.parting && { ...facts.parting, text: `numerically apart, ${facts.parting.text}` };
+  const moments = [...seen.sort((a, b) => a.time - b.time), ...facts.farthest, numerical].filter(Boolean);
   const parting = moments.length > 0 && element("section", {},
     element("h3", {}, "Where they part"),
     ...moments.map(({ time, text }) => element("button.link", { type: "button", onclick: () => select.seek(time) }, text)),

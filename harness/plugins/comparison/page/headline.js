@@ -55,7 +55,7 @@ function cause(groups) {
 
 function motion(facts, apart) {
   const parts = apart.series().map(({ name, high }) => ({ name, high, since: apart.since(name) })).sort((a, b) => a.since - b.since);
-  if (!parts.length) return { text: facts.parting ? "Nothing comes apart by a millimetre." : "The recorded motion is the same.", time: facts.parting?.time ?? null };
+  if (!parts.length) return { text: facts.parting ? "Nothing comes apart by a millimetre; the numbers do." : "The recorded motion is the same.", time: facts.parting?.time ?? null };
   const [first] = parts;
   const tool = parts.find(({ name }) => name === TOOL);
   const arm = first === tool ? "" : tool ? `; the arm moves the same until t = ${tool.since.toFixed(2)} s` : "; the arm moves the same throughout";
