@@ -95,7 +95,7 @@ def step_head(event: StepStarted, depth: int = 0) -> str:
 
 
 def step_done(event: StepFinished, style: Style = PLAIN, depth: int = 0) -> str:
-    """The line of a step that is over: sign, number, what it said, simulation time, failure.
+    """The line of a step that is over: sign, number, simulation time; why it failed comes below.
 
     The speed is how many times faster than the real thing it was, where anything moved.
 
@@ -109,8 +109,6 @@ def step_done(event: StepFinished, style: Style = PLAIN, depth: int = 0) -> str:
         line += style.quiet(f"  {speed_text(event.speed)}")
     if event.status == "expected error":
         line += style.quiet("  failed as expected")
-    if not is_good and event.message:
-        line += f"  {printable(event.message.splitlines()[0])}"
     return line
 
 
@@ -229,8 +227,7 @@ def root_failures(steps: Sequence[StepLine]) -> list[StepLine]:
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
     """Place, step, error code, message, source line, and the explanation where there is one."""
     place = f"{file}:{step.line}" if step.line else file
-    message = step.message
-    why = ": ".join(part for part in (step.error_code, message) if part)
+    why = ": ".join(part for part in (step.error_code, step.message) if part)
     explained = [f"    {line}" for line in step.explanation]
     return _joined([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
 
@@ -284,11 +281,8 @@ def verdict_line(verdict: Verdict) -> str:
 def measure_text(measure: Measure) -> str:
     """A measure with its limit, where it has one."""
     if math.isnan(measure.limit):
-        where = f" ({measure.detail})" if measure.detail else ""
-        return (
-            f"{measure.name}: {amount(measure.value, measure.unit)}"
-            f" at t={measure.time:.3f} s{where}"
-        )
+        where = f" at t={measure.time:.3f} s" + (measure.detail and f" ({measure.detail})")
+        return f"{measure.name}: {amount(measure.value, measure.unit)}{where}"
     return str(measure)
 
 
