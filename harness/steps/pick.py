@@ -282,7 +282,7 @@ def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Ce
     deepest = nearest.touches[0]
     pair, depth = deepest.pair, millimetres(-deepest.distance)
     blockers = [name for name in pair if name in cell.presence and name != step.object]
-    can_move = bool(blockers) and not cell.scene.is_ground(blockers[0])
+    can_move = bool(blockers) and not cell.presence[blockers[0]].obj.is_static
     tried = f"none of {grasps} grasps is free" if grasps > 1 else "the grasp is not free"
     if step.object in pair and not blockers and _moves_with_object(step):
         link = next(name for name in pair if name != step.object)

@@ -366,6 +366,25 @@ def test_the_ground_is_never_to_be_moved_away_from_what_lies_in_it(tmp_path, dep
     assert "'ground_plane' out of the way" not in text
 
 
+@pytest.mark.parametrize("is_static", [True, False])
+def test_only_what_is_not_static_is_to_be_moved_out_of_the_way(tmp_path, is_static):
+    """Two walls leave no room for the fingers, whichever way they stand."""
+    walls = [
+        f"- {{name: wall_{number}, static: {str(is_static).lower()}, mass: 1,"
+        f" box: {{size: {size}}}, pose: {{xyz: {xyz}}}}}"
+        for number, (size, xyz) in enumerate([
+            ("[10 cm, 2 cm, 6 cm]", "[0.2, 0.027, 0.03]"),
+            ("[10 cm, 2 cm, 6 cm]", "[0.2, -0.027, 0.03]"),
+            ("[2 cm, 3 cm, 6 cm]", "[0.227, 0, 0.03]"),
+            ("[2 cm, 3 cm, 6 cm]", "[0.173, 0, 0.03]"),
+        ])
+    ]  # fmt: skip
+    found = check(tmp_path, "- pick: cube", robot=OM, rest=objects(cube("cube", 3, 0.2, 0), *walls))
+    text = "\n".join(found.explanations[0])
+    assert "grasp is not free" in text or "is free: move 'cube'" in text
+    assert ("out of the way" in text) != is_static
+
+
 @pytest.mark.nightly(but=["- pick: {object: other, pitch: 80 deg}"])
 @pytest.mark.parametrize("second", ["- pick: other", "- pick: {object: other, pitch: 80 deg}"])
 def test_a_pick_with_a_full_gripper_is_advised_to_put_down_first(tmp_path, second):
