@@ -47,7 +47,7 @@ def opened(visit, tmp_path):
     def open_page(*verdicts, place="", **fields):
         run = make_run(object_poses={"box": at(200)}, steps=STEPS)
         fields = {"file": "my runs/it's.yaml", "case": "a", "versions": {"mujoco": "4"}, **fields}
-        run = replace(run, findings=FOUND, **fields)
+        run = replace(run, **{"findings": FOUND, **fields})
         file = tmp_path / "report.html"
         stored = StoredRun(run, verdicts, "failed", "0" * 64, {})
         file.write_text(Page(run, verdicts).html(stored), encoding="utf-8")
@@ -86,13 +86,57 @@ def test_what_never_moved_is_shown_where_it_was_to_move(opened, value, time, pla
     assert opened(never_lifted(value, time), place=place).time() == pytest.approx(opens)
 
 
+LOST = Finding("held", "the physics lost box at 0.90 s", 0.9, values={"held": False})
+
+
+@pytest.mark.parametrize("finding", [LOST, replace(LOST, message="the physics lost cup")])
+@pytest.mark.parametrize(("verdict", "judged"), [(moved_off(), 1.19), (never_lifted(), 1.19)])
+def test_what_was_lost_opens_the_page_at_the_loss(opened, verdict, judged, finding):
+    is_its = "box" in finding.message
+    visit = opened(replace(verdict, measures=(replace(verdict.measures[0], detail="box"),)),
+                   findings=(finding,))  # fmt: skip
+    assert visit.time() == pytest.approx(0.9 if is_its else judged)
+    visit.page.click("#panel-expect .verdict")
+    was_to_move = verdict.time == 0 and is_its
+    assert visit.time() == pytest.approx(0.9 if was_to_move else judged)
+
+
+def test_paper_says_the_cause_first(opened):
+    page = opened(never_lifted(), moved_off()).page
+    assert page.text_content("#summary .why") == "Cause: box is lifted: it rose 0 mm (line 9)"
+
+
+def test_what_could_not_be_observed_is_no_pass(visit, tmp_path):
+    verdict = Verdict("box is grasped", "not observable", float("nan"), "N", reason="no contacts")
+    run, file = make_run(steps=STEPS), tmp_path / "report.html"
+    text = Page(run, (verdict,)).html(StoredRun(run, (verdict,), "passed", "0" * 64, {}))
+    file.write_text(text, encoding="utf-8")
+    page = visit(file, "#tab=source").page
+    assert page.inner_text("header .pill") == "1 NOT OBSERVABLE"
+    assert page.locator("header .pill.good").count() == 0
+    facts = page.inner_text("header .facts")
+    assert "recorded 2.0 s" in facts
+    assert "seed" not in facts, "a recording has none"
+    assert "does not hold the text" in page.inner_text("#panel-source")
+
+
+def test_a_floor_is_not_used_up(opened):
+    clear = Measure("clearance", 0.0127, 0.01, ">=", "m", 0.5, "box")
+    held = Verdict("clearance", "passed", 0.0027, "m", 0.5, 3, "", "", (clear,))
+    under = replace(clear, value=0.008, comparison="<=")
+    page = opened(held, replace(held, expectation="error", margin=0.002, measures=(under,))).page
+    texts = page.locator("#panel-expect .below").all_inner_texts()
+    assert ["used" in text for text in texts] == [False, True]
+    assert "margin 2.70 mm" in texts[0]
+
+
 def test_the_first_plots_are_what_failed_with_its_limit_and_the_judged_time(opened):
     page = opened(never_lifted(), moved_off()).page
     shown = page.locator(".plot select").evaluate_all(
         "all => all.map((each) => each.selectedOptions[0].textContent)"
     )
     assert shown[:2] == [
-        "rise of the object's frame (verdicts: of its lowest point) [mm]",
+        "rise of the lowest point [mm]",
         "position error [mm]",
     ]
     page.click("#panel-expect .verdict >> nth=1")

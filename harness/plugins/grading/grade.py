@@ -65,7 +65,7 @@ def grade_bag(
     arms = dict.fromkeys(program.description.of_arm, program.description.joint_names)
     reads_wrenches = bool(known.description.wrench_sensors)
     topics = replace(topics or BagTopics(), arms=arms, reads_wrenches=reads_wrenches)
-    run = run_of_bag(bag, topics, known)
+    run = replace(run_of_bag(bag, topics, known), source=prepared.loaded.text)
     notes = [finding.message for finding in run.findings]
     doubts = [
         finding.values

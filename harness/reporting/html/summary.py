@@ -11,15 +11,10 @@ from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.html.story import depth_of, environment, ordered_steps
-from harness.reporting.margins import MOST_USED, used_allowance
+from harness.reporting.margins import MOST_USED, deciding_measures, used_allowance
 from harness.reporting.terminal import verdict_line
 
-STATUS = {
-    "passed": "passed",
-    "expected error": "failed as expected",
-    "failed": "failed",
-    "not reached": "not reached",
-}
+STATUS = {"expected error": "failed as expected"}  # others are words themselves
 TONES = {"failed": "bad", "not reached": "open", "not observable": "open"}
 
 
@@ -62,16 +57,16 @@ class Table:
 
 def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
     """What stands next to the title."""
-    run = stored.run
+    run, physics = stored.run, stored.run.versions.get("mujoco", "")
     return [
-        ("robot", run.robot.name),
-        ("seed", str(run.seed)),
-        ("simulated", f"{float(run.signals.times[-1]):.1f} s"),
-        ("physics", f"MuJoCo {run.versions['mujoco']}" if "mujoco" in run.versions else ""),
-        ("digest", stored.digest[:12]),
-        ("file", run.file),
-        ("case", run.case),
         ("points", _earned(stored)),
+        ("robot", run.robot.name),
+        ("seed", str(run.seed) if physics else ""),
+        ("simulated" if physics else "recorded", f"{float(run.signals.times[-1]):.1f} s"),
+        ("physics", physics and f"MuJoCo {physics}"),
+        ("digest", stored.digest[:12]),
+        ("file" if physics else "recording", run.file),
+        ("case", run.case),
     ]
 
 
@@ -89,8 +84,8 @@ def _earned(stored: StoredRun) -> str:
 def summary_facts(stored: StoredRun) -> list[tuple[str, str]]:
     """What stands below the title of the summary."""
     held = sum(verdict.status == "passed" for verdict in stored.verdicts)
-    text = f"{held} of {len(stored.verdicts)}" if stored.verdicts else "none is stated"
-    return [*header_facts(stored), ("expectations that hold", text)]
+    held_of = f"{held} of {len(stored.verdicts)}" if stored.verdicts else "none is stated"
+    return [*header_facts(stored), ("expectations that hold", held_of)]
 
 
 def summary_tables(stored: StoredRun) -> list[Table]:
@@ -113,8 +108,7 @@ def _verdicts(stored: StoredRun) -> Iterator[Row]:
         yield Row(
             TONES.get(verdict.status, "good"),
             (str(number), f"{verdict.expectation}{credit and f' ({credit})'}",
-             verdict_line(verdict), _used(verdict),
-             str(line or "")),
+             verdict_line(verdict), _used(verdict), str(line or "")),
             source="" if holds or not 0 < line <= len(source) else source[line - 1].strip(),
             warnings=tuple(map(str, verdict.warnings)),
         )  # fmt: skip
@@ -122,7 +116,8 @@ def _verdicts(stored: StoredRun) -> Iterator[Row]:
 
 def _used(verdict: Verdict) -> str:
     share = used_allowance(verdict)
-    return "" if share is None or share >= MOST_USED else f"{100 * share:.0f} %"
+    is_floor = any(each.comparison == ">=" for each in deciding_measures(verdict))
+    return "" if share is None or share >= MOST_USED or is_floor else f"{100 * share:.0f} %"
 
 
 def _steps(stored: StoredRun) -> Iterator[Row]:
@@ -132,8 +127,9 @@ def _steps(stored: StoredRun) -> Iterator[Row]:
         code = "" if why.startswith(step.error_code) else step.error_code
         yield Row(
             TONES.get(step.status, "good"),
-            (str(number), "\u2003" * depth_of(step, run) + step.summary, STATUS[step.status],
-             _duration(step), str(step.line or ""), ": ".join(filter(None, (code, why)))),
+            (str(number), "\u2003" * depth_of(step, run) + step.summary,
+             STATUS.get(step.status, step.status), _duration(step), str(step.line or ""),
+             ": ".join(filter(None, (code, why)))),
         )  # fmt: skip
 
 

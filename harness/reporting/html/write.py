@@ -59,14 +59,17 @@ class Page:
 
     def html(self, stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
         """The text of the page, which is made once."""
+        statuses = [verdict.status for verdict in stored.verdicts]
+        unseen = statuses.count("not observable") if stored.outcome == "passed" else 0
         text = rendered(
             bundle.TEMPLATE,
             script=bundle.script(),
             style=bundle.style(),
             run=stored.run,
+            verdicts=stored.verdicts,
             title=stored.run.scenario,
-            outcome=stored.outcome,
-            tone="good" if stored.outcome == "passed" else "bad",
+            outcome=f"{unseen} not observable" if unseen else stored.outcome,
+            tone="open" if unseen else "good" if stored.outcome == "passed" else "bad",
             header=[(name, value, _short(value)) for name, value in header_facts(stored) if value],
             facts=summary_facts(stored),
             pictures=pictures,

@@ -13,12 +13,22 @@ export function firstFailure(run) {
   return { step, verdict: step < 0 ? verdict : -1 };
 }
 
-/** When to look at a verdict [s]: of what was to move and never did, the end of the step that was to move it. @param {any} run @param {any} verdict */
+/** When the physics lost what a failed verdict is about [s]; null where it did not while it was judged. @param {any} run @param {any} verdict */
+export function lossOf(run, { bodies, ...verdict }) {
+  const { start, end } = judgedSpan(run, verdict);
+  const isIt = ({ kind, isWarning, time, message }) =>
+    kind === "held" && isWarning && time !== null && time >= start && time <= end && bodies.some((name) => message.includes(name));
+  return run.findings.find(isIt)?.time ?? null;
+}
+
+/** When to look at a verdict [s]: of what was to move and never did, when it was lost or the end of the step that was to move it. @param {any} run @param {any} verdict */
 export function momentOf(run, verdict) {
   const [measure] = verdict.measures;
   const rested = verdict.status === "failed" && measure?.comparison === ">=" && Math.abs(measure.value) <= RESTED * Math.abs(measure.limit);
   const { start } = judgedSpan(run, verdict);
   if (!rested || verdict.time === null || verdict.time > start + 1e-3) return verdict.time;
+  const loss = lossOf(run, verdict);
+  if (loss !== null) return loss;
   const movers = run.steps.filter(({ summary, end, status }) => status !== "not reached" && end > verdict.time && verdict.bodies.some((name) => summary.includes(name)));
   return movers.find(({ verb }) => verb === "pick" || verb === "grasp")?.end ?? movers[0]?.end ?? verdict.time;
 }

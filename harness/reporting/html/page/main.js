@@ -1,7 +1,7 @@
 // Puts the page together: one clock, and everything that follows it.
 
 import { Address, readAddress } from "./address.js";
-import { judgedSpan, momentOf, showCause } from "./cause.js";
+import { firstFailure, judgedSpan, lossOf, momentOf, showCause } from "./cause.js";
 import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
 import { byId, scrollInto, scrollToTop } from "./dom.js";
@@ -145,10 +145,12 @@ async function start() {
 
   /** Without a place in the address: open at the failure, or at the failure that was expected. */
   function openAtFailure() {
-    const failed = run.steps.findIndex(({ status, hasChildren }) => status === "failed" && !hasChildren);
+    const { step: failed, verdict } = firstFailure(run);
     if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected error"))) showTab("planner");
     if (failed >= 0) selectStep(failed);
     else nextFailure();
+    const loss = verdict < 0 ? null : lossOf(run, run.verdicts[verdict]);
+    if (loss !== null) clock.seek(loss);
   }
 
   /** The step that failed at a time that the terminal rounded. */

@@ -13,7 +13,7 @@ export async function unpack(element) {
   const unzipped = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const bytes = await new Response(unzipped).arrayBuffer();
   const headLength = new DataView(bytes).getUint32(0, true);
-  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, headLength)));
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, headLength)), withSigns);
   const start = 4 + headLength;
   return {
     run: head.run,
@@ -22,6 +22,13 @@ export async function unpack(element) {
       return bytes.slice(start + offset, start + offset + length);
     },
   };
+}
+
+const WRITTEN = ["source", "before", "after", "file", "case"]; // lines of files, which stay as they are
+
+/** Sentences with the degree sign of tables and plots. */
+function withSigns(key, value) {
+  return typeof value === "string" && !WRITTEN.includes(key) ? value.replace(/(?<=[\d)]) deg\b/g, "°") : value;
 }
 
 /**

@@ -9,6 +9,7 @@ import { number, seconds, tone } from "./units.js";
  * @param {(line: number) => void} select
  */
 export function sourceView({ run }, select) {
+  if (!run.source) return element("p.empty", {}, "The run does not hold the text of its scenario.");
   const bad = new Set();
   const known = new Set();
   const toned = [

@@ -20,7 +20,8 @@ export function number(value) {
   return value.toFixed(digits);
 }
 
-const FINEST = 1e-4; // in the unit that is shown: what is smaller is written as 0
+const FINEST = 1e-3; // in the unit that is shown: what is smaller is written as 0, as on the terminal
+const FINEST_ANGLE = 1e-4; // [°]
 const MOST_DIGITS = 12;
 
 /**
@@ -32,7 +33,7 @@ export function amount(value, unit, more = 0) {
   const gap = name === "" || name.startsWith("°") ? "" : " ";
   const shown = value * factor, size = Math.abs(shown);
   if (more) return `${shown.toPrecision(3 + more)}${gap}${name}`;
-  const text = size < FINEST ? "0" : size < 1e-3 ? shown.toFixed(4) : number(shown);
+  const text = size < (name === "°" ? FINEST_ANGLE : FINEST) ? "0" : size < 1e-3 ? shown.toFixed(4) : number(shown);
   return `${text}${gap}${name}`;
 }
 

@@ -4,6 +4,7 @@ import { judgedSpan } from "./cause.js";
 import { element } from "./dom.js";
 import { amount, amounts, seconds, tone } from "./units.js";
 
+const SAME = 1e-6; // of a margin: a measure that it is of
 const WORST_SHOWN = 3;
 const ORDER = ["bad", "open", "good"];
 
@@ -45,15 +46,18 @@ function verdict(run, each, index, select) {
 }
 
 /** A bar of the allowance: how much of it was used; below it the margin, and the place. */
-function marginBar({ margin, unit, used, status, tightest }, place) {
+function marginBar({ margin, unit, used, status, tightest, measures }, place) {
   const below = (...words) => element("span.below", {}, ...words, place);
   if (margin === null) return [below()];
   const marginText = `${tightest && `${tightest}: `}${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
   if (used === null) return [below(element("span", {}, marginText))];
   const percent = Math.round(100 * used);
-  const bar = element("span.margin", { role: "img", "aria-label": `${percent} % of the allowance used` }, element("i"));
+  const decides = ({ value, limit }) => limit !== null && Math.abs(Math.abs(value - limit) - Math.abs(margin)) <= SAME * Math.abs(margin);
+  const isFloor = (measures.find(decides) ?? measures[0]).comparison === ">=";
+  const label = isFloor ? `what is required is ${percent} % of what was measured` : `${percent} % of the allowance used`;
+  const bar = element("span.margin", { role: "img", "aria-label": label }, element("i"));
   bar.firstChild.style.width = `${Math.max(1, Math.min(100, percent))}%`;
-  const text = used > 10 || status !== "passed" ? marginText : `${percent} % used · ${marginText}`;
+  const text = isFloor || used > 10 || status !== "passed" ? marginText : `${percent} % used · ${marginText}`;
   return [bar, below(element("span", { title: bar.ariaLabel }, text))];
 }
 
