@@ -161,7 +161,7 @@ def test_commands_between_set_points_keep_the_joints_accelerations(scaling, coun
 def test_a_scaled_motion_whose_commands_keep_the_limits_is_not_slowed():
     waypoints = np.array([np.zeros(6), np.full(6, 0.7), np.linspace(0, 1, 6)])
     scaled = Limits.scaled(np.full(6, np.pi), np.full(6, 5.0), 0.3, 0.3)
-    free = replace(scaled, commanded=None)
+    free = replace(scaled, commanded=np.full_like(scaled.acceleration, np.inf))
     for limits in (scaled, free):
         assert time_blended(NAMES, BlendedPath(waypoints, 0.05), limits).duration == pytest.approx(
             time_blended(NAMES, BlendedPath(waypoints, 0.05), scaled).duration, abs=0

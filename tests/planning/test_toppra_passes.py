@@ -2,6 +2,7 @@
 
 # pyright: reportAttributeAccessIssue=false
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.timing import BlendedPath
-from harness.planning.timing.toppra_passes import HalfPlanes, squared_rates
+from harness.planning.timing.toppra_passes import half_planes, squared_rates
 from harness.planning.timing.toppra_solver import Bounds, fastest, joint_bounds
 
 
@@ -91,8 +92,8 @@ def agree(seeds):
         found = squared_rates(bounds, grid)
         expected = duration(reference**2, grid)
         assert duration(found, grid) == pytest.approx(expected, rel=1e-6), seed
-        planes = HalfPlanes.of(bounds, grid)
-        excess = planes.now * found[:-1, None] + planes.after * found[1:, None] - planes.room
+        now, after, room = half_planes(bounds, grid)
+        excess = now * found[:-1, None] + after * found[1:, None] - room
         assert excess.max() <= 1e-8, seed
 
 
@@ -117,4 +118,4 @@ def test_where_the_bounds_forbid_to_stand_still_there_are_no_times(standing):
 def test_limits_without_times_are_an_error():
     path, limits, grid = drawn(1)
     with pytest.raises(TimingError, match="TOPP-RA found no times"):
-        fastest(path, Limits(limits.velocity, 0 * limits.acceleration - 1.0), grid)
+        fastest(path, replace(limits, acceleration=0 * limits.acceleration - 1.0), grid)

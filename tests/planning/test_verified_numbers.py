@@ -22,7 +22,7 @@ from harness.recording.motion_failures import ConstraintFailure
 N = 11
 TIMES = np.arange(N) * 0.1
 START, END = np.array([0.0, 1.0]), np.array([0.5, 1.0])
-LIMITS = Limits(np.array([2.0, 1.0]), np.array([4.0, 3.0]))
+LIMITS = Limits.scaled(np.array([2.0, 1.0]), np.array([4.0, 3.0]), 1.0, 1.0)
 SPACE = SimpleNamespace(
     wraps=np.array([True, True]),
     lower=np.array([-1.0, -2.0]), upper=np.array([0.5, 2.0]), joint_names=("one", "two"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ import numpy as np
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.collision.native.library import call
 from harness.planning.efforts import InverseDynamics
 from harness.planning.timing.profiles import (
     GRID,
@@ -49,16 +51,16 @@ class Limits:
     Attributes:
         velocity: The velocity limits; never infinite.
         acceleration: The acceleration limits; never infinite.
-        dynamics: The dynamics of the efforts; None where the robot gives no effort limits.
         commanded: The accelerations of the joints without scaling, which the commands between the
-            set points of a trajectory keep as well; None where nothing interpolates.
+            set points of a trajectory keep as well; inf where nothing interpolates.
+        dynamics: The dynamics of the efforts; None where the robot gives no effort limits.
     """
 
     velocity: FloatArray
     acceleration: FloatArray
+    commanded: FloatArray
     jerk: float = np.inf
     dynamics: InverseDynamics | None = None
-    commanded: FloatArray | None = None
 
     @classmethod
     def scaled(
@@ -66,13 +68,17 @@ class Limits:
     ) -> Limits:
         """Joint limits times the scaling factors; unlimited velocities count as 2 pi rad/s."""
         bounded = np.where(np.isfinite(velocity), velocity, 2 * np.pi)
-        return cls(bounded * velocity_scaling, acceleration * accel, commanded=acceleration)
+        return cls(bounded * velocity_scaling, acceleration * accel, acceleration)
 
-    def excess(self, trajectory: JointTrajectory) -> float:
-        """How many times slower set points must be; at most 1 when they keep the limits."""
-        fast = float(np.max(np.abs(trajectory.velocities) / self.velocity))
-        hard = float(np.sqrt(np.max(np.abs(trajectory.accelerations) / self.acceleration)))
-        return max(fast, hard)
+    def excess(self, trajectory: JointTrajectory) -> tuple[float, float]:
+        """How many times slower the cubics between set points, and they themselves, must be.
+
+        At most 1 where they keep the limits.
+        """
+        states = trajectory.positions, trajectory.velocities, trajectory.accelerations
+        given = trajectory.times, *states, self.velocity, self.acceleration, self.commanded
+        fast, hard, between = call("largest_shares", given, np.empty(3)).tolist()
+        return math.sqrt(between), max(fast, math.sqrt(hard))
 
     def effort_excess(
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
@@ -122,17 +128,16 @@ def sampled_within_limits(
     curve, excess = smoothed_over(window), np.inf
     for _ in range(_MOST_STRETCHES):
         trajectory = sample(joint_names, stretched(curve, length, total), total)
-        between = _excess_between(trajectory, limits)
+        between, at_points = limits.excess(trajectory)
         needed = _smoothing(trajectory, limits, window, between)
         if needed > window:
             slower, window, length = total / length, needed, duration + needed
             curve, total = smoothed_over(window), on_grid(slower * length)
             continue
-        excess = max(between, limits.excess(trajectory), link_excess(trajectory))
+        excess = max(between, at_points, link_excess(trajectory))
         if excess <= 1.0 + 1e-9:
-            some = slice(None, None, EFFORT_SAMPLES)
             states = trajectory.positions, trajectory.velocities, trajectory.accelerations
-            excess = limits.effort_excess(*(rows[some] for rows in states))
+            excess = limits.effort_excess(*(rows[::EFFORT_SAMPLES] for rows in states))
         if excess <= 1.0 + 1e-9:
             return trajectory
         total = on_grid(max(total * excess, total + GRID))
@@ -156,19 +161,6 @@ def _smoothing(trajectory: JointTrajectory, limits: Limits, window: float, betwe
             wider = min(window * jerk / limits.jerk, 2.0 * window)
             return on_grid(max(wider, window + GRID) if window else ramp)
     return max(window, SMOOTHED_PERIODS * SAMPLE_PERIOD) if between > 1.0 + 1e-9 else window
-
-
-def _excess_between(trajectory: JointTrajectory, limits: Limits) -> float:
-    """How many times slower a motion must be for the cubics between its set points."""
-    if limits.commanded is None:
-        return 0.0
-    step = np.diff(trajectory.times)[:, None]
-    mean = np.diff(trajectory.positions, axis=0) / step
-    before, after = trajectory.velocities[:-1], trajectory.velocities[1:]
-    first = (6.0 * mean - 4.0 * before - 2.0 * after) / step
-    last = (-6.0 * mean + 2.0 * before + 4.0 * after) / step
-    largest = np.maximum(np.abs(first), np.abs(last))
-    return float(np.sqrt(np.max(largest / limits.commanded)))
 
 
 def stretched(curve: Curve, duration: float, total: float) -> Curve:

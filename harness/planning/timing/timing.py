@@ -76,10 +76,9 @@ class BlendedPath:
 
     def grid(self) -> FloatArray:
         """Points for TOPP-RA: evenly on every line and blend, shape (M,)."""
-        pieces = [pair for pair in pairwise(self.breaks.tolist()) if pair[1] - pair[0] > 1e-9]
-        grid = np.unique(
-            np.concatenate([np.linspace(*piece, POINTS_PER_PIECE + 1) for piece in pieces])
-        )
+        first, last = self.breaks[:-1], self.breaks[1:]
+        has_length = last - first > 1e-9
+        grid = np.unique(np.linspace(first[has_length], last[has_length], POINTS_PER_PIECE + 1))
         grid = grid[np.concatenate([[True], np.diff(grid) > 1e-10])]
         grid[0], grid[-1] = 0.0, self.length
         return grid

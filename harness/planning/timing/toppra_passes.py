@@ -40,37 +40,28 @@ class Bounds:
     between: bool = True
 
 
-@dataclass(frozen=True, eq=False)
-class HalfPlanes:
-    """now x + after y <= room for each step and bound, shape (N, m); (now, after) has length 1."""
-
-    now: FloatArray
-    after: FloatArray
-    room: FloatArray
-
-    @classmethod
-    def of(cls, bounds: Sequence[Bounds], grid: FloatArray) -> HalfPlanes:
-        """Half-planes of bounds on the steps between grid points (N + 1,)."""
-        step = 2 * np.diff(grid)[:, None]
-        one, none = np.ones_like(step), np.zeros_like(step)
-        largest = np.full(len(grid), LARGEST_SQUARE)
-        for each in bounds:
-            if each.rate_squared is not None:
-                largest = np.minimum(largest, each.rate_squared)
-        # x is at most its bound, and y at least zero.
-        parts = [(one, none, largest[:-1, None]), (none, -one, none)]
-        for each in bounds:
-            speeds, bends, offsets = each.speeds, each.bends, each.offsets
-            rows = [(step * bends[:-1] - speeds[:-1], speeds[:-1], offsets[:-1])]
-            if each.between:
-                rows.append((-speeds[1:], speeds[1:] + step * bends[1:], offsets[1:]))
-            for now, after, offset in rows:
-                parts.append((now, after, step * (each.most - offset)))
-                parts.append((-now, -after, step * (each.most + offset)))
-        now, after, room = (np.hstack(columns) for columns in zip(*parts, strict=True))
-        length = np.hypot(now, after)
-        length[length == 0.0] = 1.0  # nothing moves: the bound is of the offset alone
-        return cls(now / length, after / length, room / length)
+def half_planes(bounds: Sequence[Bounds], grid: FloatArray) -> tuple[FloatArray, ...]:
+    """Half-planes: now x + after y <= room, (N, m) each; (now, after) has length 1."""
+    step = 2 * np.diff(grid)[:, None]
+    one, none = np.ones_like(step), np.zeros_like(step)
+    largest = np.full(len(grid), LARGEST_SQUARE)
+    for each in bounds:
+        if each.rate_squared is not None:
+            largest = np.minimum(largest, each.rate_squared)
+    # x is at most its bound, and y at least zero.
+    parts = [(one, none, largest[:-1, None]), (none, -one, none)]
+    for each in bounds:
+        speeds, bends, offsets = each.speeds, each.bends, each.offsets
+        rows = [(step * bends[:-1] - speeds[:-1], speeds[:-1], offsets[:-1])]
+        if each.between:
+            rows.append((-speeds[1:], speeds[1:] + step * bends[1:], offsets[1:]))
+        for now, after, offset in rows:
+            parts.append((now, after, step * (each.most - offset)))
+            parts.append((-now, -after, step * (each.most + offset)))
+    now, after, room = (np.hstack(columns) for columns in zip(*parts, strict=True))
+    length = np.hypot(now, after)
+    length[length == 0.0] = 1.0  # nothing moves: the bound is of the offset alone
+    return now / length, after / length, room / length
 
 
 def squared_rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray | None:
@@ -87,8 +78,7 @@ def squared_rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray | No
         H. Pham, Q.-C. Pham, "A New Approach to Time-Optimal Path Parameterization Based on
         Reachability Analysis", IEEE T-RO 34(3), 2018.
     """
-    planes = HalfPlanes.of(bounds, grid)
-    if not np.all(planes.room >= 0):
+    planes = half_planes(bounds, grid)
+    if not np.all(planes[-1] >= 0):
         return None
-    found = np.empty(len(grid))
-    return call("squared_rates", (planes.now, planes.after, planes.room), found)
+    return call("squared_rates", planes, np.empty(len(grid)))

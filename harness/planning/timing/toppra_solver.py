@@ -86,5 +86,4 @@ def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve
     steps = np.diff(grid)
     growths = 0.5 * np.diff(rates**2) / steps
     ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])
-
     return lambda times: path.cubics.timed(times, (ends, grid, rates, growths)), float(ends[-1])

@@ -129,3 +129,23 @@ void window_means(const Array *t) {
         }
     }
 }
+
+/* times (N,); positions, velocities, accelerations (N, dof) each; the limits of the latter two, and
+   of accelerations on the cubics between states, (dof,) each; the largest shares of these (3,). */
+void largest_shares(const Array *t) {
+    const double *times = t[0].data, *p = t[1].data, *v = t[2].data, *a = t[3].data;
+    const double *fastest = t[4].data, *hardest = t[5].data, *between = t[6].data;
+    double *found = t[7].data;
+    int64_t count = t[1].shape[0], dof = t[1].shape[1];
+    for (int k = 0; k < 3; ++k) found[k] = 0.0;
+    for (int64_t i = 0; i < count * dof; ++i) {
+        int64_t j = i % dof, next = i + dof;
+        found[0] = largest_of(fabs(v[i]) / fastest[j], found[0]);
+        found[1] = largest_of(fabs(a[i]) / hardest[j], found[1]);
+        if (next >= count * dof) continue;
+        double step = times[i / dof + 1] - times[i / dof], mean = (p[next] - p[i]) / step;
+        double first = (6.0 * mean - 4.0 * v[i] - 2.0 * v[next]) / step;
+        double last = (-6.0 * mean + 2.0 * v[i] + 4.0 * v[next]) / step;
+        found[2] = largest_of(largest_of(fabs(first), fabs(last)) / between[j], found[2]);
+    }
+}
