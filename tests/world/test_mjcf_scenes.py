@@ -358,6 +358,18 @@ def test_an_import_writes_ellipsoids_and_is_equal(scene, capsys):
     assert written.physics == read.physics
 
 
+@pytest.mark.parametrize("light", ['type="image"', 'type="image" intensity="5"', ""])
+def test_a_light_of_a_picture_is_left_out_with_the_picture(tmp_path, light):
+    text = f"""<mujoco><asset><texture name="sky" type="cube" builtin="flat" width="8" height="48"/>
+     </asset><worldbody><light texture="sky" {light}/><light type="directional" dir="0 0 -1"/>
+     <body name="box" pos="0 0 1"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    mujoco.MjModel.from_xml_string(text)
+    (tmp_path / "lit.xml").write_text(text)
+    world = load_mjcf(tmp_path / "lit.xml").world
+    assert [each.name for each in world.objects] == ["box"]
+    assert len(world.lights) == 1
+
+
 def test_a_mistake_ends_with_code_2_and_writes_nothing(tmp_path, capsys):
     (tmp_path / "bad.xml").write_text("<mujoco>\n<worldbody><geom/></worldbody></mujoco>")
     assert main(["import", "mjcf", str(tmp_path / "bad.xml")]) == 2

@@ -88,13 +88,15 @@ def test_a_mistake_of_the_world_is_reported_at_its_line_with_exit_code_2(cell, c
     )
 
 
+@pytest.mark.parametrize("uri", ["model://box", "file://box", "file://models/box"])
 @pytest.mark.parametrize("given", ["scenario", "environment"])
-def test_models_are_found_on_the_model_path(tmp_path, monkeypatch, given):
-    folder = tmp_path / "elsewhere" / "box"
+def test_models_are_found_on_the_model_path(tmp_path, monkeypatch, given, uri):
+    """Gazebo Classic looks up relative paths of `file://` there, too."""
+    folder = tmp_path / "elsewhere" / uri.partition("://")[2]
     folder.mkdir(parents=True)
     (folder / "model.sdf").write_text(CRATE)
     (tmp_path / "here").mkdir()
-    text = text_with("world", "<include><uri>model://box</uri></include>")
+    text = text_with("world", f"<include><uri>{uri}</uri></include>")
     write(tmp_path / "here", text)
     world = "{name: world.sdf, model_path: [../elsewhere]}" if given == "scenario" else "world.sdf"
     if given == "environment":

@@ -119,12 +119,23 @@ def test_all_missing_models_and_meshes_are_reported_together(tmp_path):
 
 @pytest.mark.parametrize("name", ["a", "a/meshes/b.stl"])
 def test_a_model_in_models_next_to_worlds_is_named_with_its_folder(tmp_path, name):
-    (tmp_path / "models" / "a").mkdir(parents=True)
+    (tmp_path / "models" / name).mkdir(parents=True)
     (tmp_path / "worlds").mkdir()
     include = f"<include><uri>model://{name}</uri></include>"
     problem = problem_of(tmp_path / "worlds", text_with("world", include))
     assert problem.message == f"`model://{name}` is not found"
     assert problem.hint.startswith(f"it is in {tmp_path / 'models'}; name its folder in `world:")
+
+
+@pytest.mark.parametrize("name", ["models/a", "models/a/meshes/b.dae"])
+def test_a_file_below_the_package_of_a_world_is_named_with_its_folder(tmp_path, name):
+    (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "worlds").mkdir()
+    include = f"<include><uri>file://{name}</uri></include>"
+    problem = problem_of(tmp_path / "worlds", text_with("world", include))
+    assert problem.message == f"`file://{name}` is not found"
+    assert problem.hint.startswith(f"it is in {tmp_path}; name its folder in `world:")
+    assert problem.hint.endswith("or of an import with --model-path")
 
 
 @pytest.mark.parametrize("scheme", ["model", "package"])

@@ -108,7 +108,7 @@ def _reached_goal(request: StageRequest, goal: LinkGoal, near: NearestPose) -> s
     way = near.pose.translation - target_of(goal)
     way /= max(float(np.linalg.norm(way)), 1e-9)
     is_pose = isinstance(goal, PoseGoal)
-    kept_turn = not is_pose or goal.pose.distance_to(near.pose)[1] < _KEPT
+    kept_turn = is_pose and goal.pose.distance_to(near.pose)[1] < _KEPT
     rotation = goal.pose.rotation if is_pose and kept_turn else near.pose.rotation
     quat = np.round(SE3(rotation, way).quat_wxyz, 5) + 0.0
     for back in _STEPS_BACK:

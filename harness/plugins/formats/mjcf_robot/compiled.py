@@ -59,10 +59,10 @@ def driven_trees(model: Any) -> set[int]:
 
 
 def _remove_looks(spec: Any) -> None:
-    """Remove all textures and skins: pictures show plain colours, and files may be missing."""
+    """Remove textures, and lights with one, and skins: colours are plain, files may be missing."""
     for material in spec.materials:
         material.textures = [""] * len(material.textures)
-    for look in [*spec.textures, *spec.skins]:
+    for look in [*spec.textures, *spec.skins, *(each for each in spec.lights if each.texture)]:
         spec.delete(look)
 
 

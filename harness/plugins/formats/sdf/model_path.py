@@ -20,7 +20,10 @@ FUEL_CACHE = "GZ_FUEL_CACHE_PATH"  # Gazebo's variable: the folder of Fuel's dow
 
 FUEL = re.compile(r"https?://(?P<host>[^/]+)/(?:[\d.]+/)?(?P<owner>[^/]+)/models/(?P<name>[^/]+)")
 
-HINT = "name its folder in `world: {name: ..., model_path: [...]}` or in GZ_SIM_RESOURCE_PATH"
+HINT = (
+    "name its folder in `world: {name: ..., model_path: [...]}`, in GZ_SIM_RESOURCE_PATH, or of an"
+    " import with --model-path"
+)
 
 
 class MissingFileError(SpecError):
@@ -44,19 +47,15 @@ class ModelPath:
             named: Folders of the scenario or the command line; searched first.
             environment: Source of `VARIABLES` and of Gazebo's cache of Fuel models.
         """
+        listed = os.pathsep.join(environment.get(each, "") for each in VARIABLES).split(os.pathsep)
         self.folders = [
             *named,
             world_folder,
             world_folder / "models",
-            *(
-                expanded(folder)
-                for name in VARIABLES
-                for folder in environment.get(name, "").split(os.pathsep)
-                if folder
-            ),
+            *(expanded(folder) for folder in listed if folder),
             data_folder("worlds") / "models",
         ]
-        self._nearby = world_folder.parent / "models"  # next to `worlds`, as most packages have it
+        self._nearby = (world_folder.parent / "models", world_folder.parent)  # of most packages
         home = expanded(environment.get("HOME", "~"))
         self._cache = Path(environment.get(FUEL_CACHE) or home / ".gz" / "fuel")
         self._roots = [folder.resolve() for folder in (*self.folders, self._cache)]
@@ -82,7 +81,7 @@ class ModelPath:
             itself = [base_folder / inside] if base_folder.name == name else []
             candidates = [*(folder / rest for folder in self.folders), *itself]
         elif scheme == "file":
-            candidates = [base_folder / rest]
+            candidates = [base_folder / rest, *(folder / rest for folder in self.folders)]
         elif scheme in ("http", "https"):
             candidates = self._cached(uri)
         else:
@@ -99,8 +98,8 @@ class ModelPath:
         if scheme in ("http", "https"):
             hint = "nothing is downloaded: get the model with `gz fuel download -u ADDRESS`"
             raise MissingFileError([element.problem(f"`{uri}` is not in Gazebo's cache", hint)])
-        nearby = self._nearby / rest.partition("/")[0]
-        hint = f"it is in {self._nearby}; {HINT}" if separator and nearby.is_dir() else HINT
+        near = [each for each in self._nearby if separator and (each / rest).exists()]
+        hint = f"it is in {near[0]}; {HINT}" if near else HINT
         raise MissingFileError([element.problem(f"`{uri}` is not found", hint)])
 
     def _cached(self, uri: str) -> list[Path]:
