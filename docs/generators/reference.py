@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from docs.generators.worked_examples import example
 from harness.core.errors import ErrorCode
 from harness.core.registry import OWN_PACKAGE
-from harness.language.annotations import description_of, is_model, keys_of
+from harness.language.annotations import description_of, is_model, keys_of, plugin_model
 from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields
 from harness.language.language import KEYS_BY_VERB
@@ -100,6 +100,7 @@ def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
 
 def _models_in(annotation: Any) -> list[type[SpecModel]]:
     """The models that are no step and no expectation, anywhere in an annotation."""
+    annotation = plugin_model(annotation) or annotation
     if is_model(annotation):
         is_word = issubclass(annotation, StepFields | ExpectationFields)
         return [] if is_word else [annotation]
@@ -127,8 +128,9 @@ def _kind(field: FieldInfo) -> str:
 def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
     """What may be written, in words: `length [m]`, `list of text`, a model's keys."""
     while get_origin(annotation) is Annotated:
+        model = plugin_model(annotation)
         annotation, *more = get_args(annotation)
-        metadata = (*more, *metadata)
+        annotation, metadata = model or annotation, (*more, *metadata)
     for item in metadata:
         function = item.func if isinstance(item, BeforeValidator) else None
         units, said = getattr(function, "units", None), getattr(function, "words", None)

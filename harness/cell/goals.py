@@ -9,21 +9,15 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.core.spatial import SE3
 from harness.core.state_words import stated_name
 from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.language.goals import CartesianLimitsSpec, GoalFields, GoalTolerance
-from harness.language.planning import PathConstraintsSpec as ConstraintsSpec
 from harness.language.poses import Pose, Position
 from harness.ports.goals import (
     Goal,
-    JointBand,
     JointGoal,
-    OrientationBand,
-    PathConstraints,
     PoseGoal,
-    PositionBox,
     PositionGoal,
 )
 from harness.ports.motions import CartesianLimits as LinkLimits
@@ -107,27 +101,6 @@ def pose_goal(
 def _largest(tolerance: GoalTolerance) -> float:
     given = tolerance.orientation
     return max(given) if isinstance(given, tuple) else given
-
-
-def path_constraints(spec: ConstraintsSpec, cell: Cell) -> PathConstraints:
-    """The path constraints of a motion, in the world, for the present state of the cell."""
-    band, box = spec.orientation, spec.position
-    tcp = cell.description.tcp_link
-    orientation = position = None
-    if band is not None:
-        rotation = cell.world_pose(band.pose).rotation
-        orientation = OrientationBand(band.link or tcp, rotation, band.tolerance)
-    if box is not None:
-        frame = cell.frame(box.center.frame)
-        middle = SE3(frame.rotation, frame.apply(np.array(box.center.xyz)))
-        position = PositionBox(box.link or tcp, middle, box.size)
-    joints = tuple(
-        JointBand(
-            name, joint.position - joint.tolerance_below, joint.position + joint.tolerance_above
-        )
-        for name, joint in (spec.joints or {}).items()
-    )
-    return PathConstraints(orientation, position, joints)
 
 
 def world_point(position: Position, cell: Cell) -> FloatArray:

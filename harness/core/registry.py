@@ -53,7 +53,7 @@ BUILT_IN = {
     **dict.fromkeys(("observer", "suite_section", "suite_reporter", "result_format"), ""),
     **dict.fromkeys(("grip", "adhesion", "tracker", "motion", "camera_recorder"), ""),
     **dict.fromkeys(("explainer", "path_finder", "expansion", "program_part"), ""),
-    "syntax_adviser": "",
+    **dict.fromkeys(("key", "syntax_adviser"), ""),
 }
 """Every kind of plug-in, and the package of the core whose modules are built-in ones."""
 

@@ -11,19 +11,26 @@ from pydantic import BaseModel, BeforeValidator
 from pydantic.fields import FieldInfo
 
 from harness.language.base import SpecModel
+from harness.language.plugin_field import PluginModel
 
 
 def bare(annotation: Any) -> Any:
-    """The annotation without `Annotated` and without `| None`."""
+    """The annotation without `Annotated` and `| None`; of a plug-in's key its model."""
     while True:
         if get_origin(annotation) is Annotated:
-            annotation = get_args(annotation)[0]
+            annotation = plugin_model(annotation) or get_args(annotation)[0]
             continue
         members = branches(annotation)
         if not members or type(None) not in members:
             return annotation
         rest = tuple(member for member in members if member is not type(None))
         annotation = rest[0] if len(rest) == 1 else Union[rest]  # noqa: UP007  # built at run time
+
+
+def plugin_model(annotation: Any) -> Any:
+    """The model of a plug-in's key, `Any` where the plug-in is missing; None of other keys."""
+    keys = (each for each in get_args(annotation) if isinstance(each, PluginModel))
+    return next((key.model or Any for key in keys), None)
 
 
 def branches(annotation: Any) -> tuple[Any, ...]:

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
 from harness.language.base import (
-    Angle,
     Count,
     Duration,
     JointJerk,
-    JointValue,
-    Length,
     Name,
     NonNegativeLength,
     Number,
@@ -21,7 +18,6 @@ from harness.language.base import (
     refuse_percent,
 )
 from harness.language.plugin_field import PluginName
-from harness.language.poses import Pose, Position
 
 Scaling = Annotated[Share, BeforeValidator(refuse_percent), Field(ge=0.001, le=1)]
 """Share of a limit; below a thousandth a motion would take hours."""
@@ -104,71 +100,3 @@ class Planning(SpecModel):
         description="Parameters of the planner; those of `ompl` have OMPL's names: `range`, "
         "`goal_bias`, `max_nearest_neighbors`, `samples_per_batch` ...",
     )
-
-
-BandAngle = Annotated[Angle, Field(ge=0.001)]
-BandValue = Annotated[JointValue, Field(ge=0.0005)]
-BandLength = Annotated[Length, Field(ge=0.0005)]
-
-
-class OrientationConstraint(SpecModel):
-    """Keep a link, or an attached object, turned as given within a tolerance about each axis.
-
-    Where any turn about one axis is allowed, and the other two tolerances are equal, they limit the
-    tilt of that axis: with `[0.1, 0.1, 3.15]` the z axis stays within 0.1 rad of that of `pose`.
-    """
-
-    link: Name | None = Field(
-        default=None,
-        description="The link or the attached object that is constrained; the default is the TCP.",
-    )
-    pose: Pose = Field(description="The pose whose rotation the link keeps.")
-    tolerance: tuple[BandAngle, BandAngle, BandAngle] = Field(
-        description="The tolerances about x, y, z of `pose`, at least 0.001; 3.15 and more allow "
-        "any turn [rad]."
-    )
-
-
-class PositionConstraint(SpecModel):
-    """Keep the origin of a link, or of an attached object, inside a box."""
-
-    link: Name | None = Field(
-        default=None,
-        description="The link or the attached object that is constrained; the default is the TCP.",
-    )
-    center: Position = Field(description="The centre of the box.")
-    size: tuple[BandLength, BandLength, BandLength] = Field(
-        description="The full size along the axes of the centre's frame, at least 0.5 mm [m]."
-    )
-
-
-class JointConstraint(SpecModel):
-    """Keep a joint near a position."""
-
-    position: JointValue = Field(description="The position near which the joint stays.")
-    tolerance_above: BandValue = Field(
-        description="The largest excess over the position, at least 0.0005."
-    )
-    tolerance_below: BandValue = Field(
-        description="The largest deficit below the position, at least 0.0005."
-    )
-
-
-class PathConstraintsSpec(SpecModel):
-    """The moveit_msgs/Constraints that hold along the path; at least one is given."""
-
-    orientation: OrientationConstraint | None = Field(
-        default=None, description="The orientation constraint of a link or an attached object."
-    )
-    position: PositionConstraint | None = Field(
-        default=None, description="The position constraint of a link or an attached object."
-    )
-    joints: dict[Name, JointConstraint] | None = Field(
-        default=None, description="The joint constraints by joint name."
-    )
-
-    @model_validator(mode="after")
-    def _some(self) -> PathConstraintsSpec:
-        if self.orientation is None and self.position is None and not self.joints:
-            raise ValueError("path constraints are at least one of orientation, position, joints")
-        return self

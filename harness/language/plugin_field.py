@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-from harness.core.registry import noun, plugin_hints, registry
+from harness.core.registry import absent_plugins, noun, plugin_hints, registry
 from harness.language.base import SpecModel
 from harness.language.files.mistakes import MistakeError
 
-MARK = "plugin"  # in a field's JSON Schema: the kind of plug-in that it holds
+MARK = "plugin"  # in a field's JSON Schema: the definition of what it holds
 
 
 class PluginField:
@@ -35,7 +35,7 @@ class PluginField:
     def __get_pydantic_json_schema__(
         self, _: core_schema.CoreSchema, __: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        return {MARK: self.kind}
+        return {MARK: self.kind.capitalize()}
 
     def _validate(self, value: object) -> SpecModel:
         given = cast("dict[str, Any]", value) if isinstance(value, dict) else {}
@@ -46,6 +46,48 @@ class PluginField:
             raise PydanticCustomError("union_tag_invalid", message)  # pyright: ignore[reportArgumentType]
         model: type[SpecModel] = models[word]
         return model.model_validate({key: item for key, item in given.items() if key != self.tag})
+
+
+class KeyModel(SpecModel):
+    """What a key of a file holds that belongs to a plug-in, such as `mount` of a robot."""
+
+    plugin_kind: ClassVar[str] = "key"
+    key: ClassVar[str] = ""
+
+    @classmethod
+    def plugin_name(cls) -> str:
+        """The key that this class is registered under."""
+        return cls.__dict__.get("key", "")
+
+
+class PluginModel:
+    """Annotates a field with the model of a plug-in: `Annotated[KeyModel, PluginModel("mount")]`.
+
+    The model is imported when a file uses the key.
+    """
+
+    def __init__(self, key: str) -> None:
+        self.key = key
+
+    @property
+    def model(self) -> type[KeyModel] | None:
+        """The model; None where its plug-in is not installed."""
+        return registry(KeyModel.plugin_kind).get(self.key)
+
+    def __get_pydantic_core_schema__(
+        self, _: Any, __: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self._validate)
+
+    def __get_pydantic_json_schema__(
+        self, _: core_schema.CoreSchema, __: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {} if self.model is None else {MARK: self.model.__name__}
+
+    def _validate(self, value: object) -> KeyModel:
+        if self.model is None:
+            raise MistakeError("no plug-in applies this key here", "; ".join(absent_plugins()))
+        return self.model.model_validate(value)
 
 
 class PluginName:

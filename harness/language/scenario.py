@@ -16,20 +16,18 @@ from harness.language.base import (
     JointVelocity,
     Name,
     Number,
-    RosName,
     SpecModel,
     kind_of,
 )
 from harness.language.cameras import CameraSpec, VideoSpec
 from harness.language.expectation import AnyExpectation
-from harness.language.mount import MountSpec
 from harness.language.planning import Planning
-from harness.language.plugin_field import PluginName
+from harness.language.plugin_field import KeyModel, PluginModel, PluginName
 from harness.language.poses import Pose
 from harness.language.step import AnyStep
 from harness.language.variation import CaseKeys
 from harness.language.world import ObjectSpec
-from harness.language.wrench_sensors import WrenchSensorSpec
+from harness.language.wrench_sensors import WrenchSensorKey
 
 
 class StartState(SpecModel):
@@ -62,18 +60,6 @@ class JointLimits(SpecModel):
     )
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
         default=None, description="The largest effort of the joint's motor."
-    )
-
-
-class MoveItFiles(SpecModel):
-    """The files of a MoveIt configuration package."""
-
-    joint_limits: str | None = Field(
-        default=None, description="The path of joint_limits.yaml, which narrows the robot's limits."
-    )
-    kinematics: str | None = Field(
-        default=None,
-        description="The path of kinematics.yaml; `position_only_ik` of each group is read.",
     )
 
 
@@ -128,15 +114,15 @@ class RobotSpec(SpecModel):
         "of the robot's files. A contact has the smaller one of its two surfaces.",
     )
     base: Pose = Field(default=Pose(), description="The pose of the base in the world.")
-    mount: MountSpec | None = Field(
+    mount: Annotated[KeyModel, PluginModel("mount")] | None = Field(
         default=None,
         description="What the base stands on: rails, which are joints of the arm, or a pedestal.",
     )
     kinematics: str | None = Field(
         default=None, description="The UR calibration file, as ur_calibration writes it."
     )
-    moveit: MoveItFiles = Field(
-        default=MoveItFiles(), description="The files of the robot's MoveIt configuration."
+    moveit: Annotated[KeyModel, PluginModel("moveit")] | None = Field(
+        default=None, description="The files of the robot's MoveIt configuration."
     )
     ik_solver: IkSolverName | None = Field(
         default=None,
@@ -169,7 +155,7 @@ class RobotSpec(SpecModel):
         default_factory=dict,
         description="Additional group states: group -> state -> joint -> position.",
     )
-    wrench_sensors: dict[Name, WrenchSensorSpec] = Field(
+    wrench_sensors: dict[Name, Annotated[WrenchSensorKey, PluginModel("wrench_sensor")]] = Field(
         default_factory=dict,
         description="Sensors of force and torque between links, by name; they are added to those "
         "of the robot's files, or replace them.",
@@ -201,31 +187,6 @@ class RobotSpec(SpecModel):
 
 
 ArmName = Annotated[Name, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]
-
-
-class ControllerKeys(SpecModel):
-    """Names of the controllers of one arm on the ROS 2 graph."""
-
-    arm_controllers: tuple[RosName, ...] | None = Field(
-        default=None, description="The arm's trajectory controller; each name leads to the same."
-    )
-    gripper_controller: RosName | None = Field(
-        default=None, description="The gripper's controller, of GripperCommand and trajectories."
-    )
-
-
-class Ros2Names(ControllerKeys):
-    """Names on the ROS 2 graph, where they differ from the robot's own."""
-
-    arms: dict[Name, ControllerKeys] = Field(
-        default_factory=dict,
-        description="Names of the controllers of each arm of a robot with several, by the arm's "
-        "name.",
-    )
-    prefix: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,39}$")] | None = Field(
-        default=None,
-        description="What nodes put before the names of joints and links, such as `left_`.",
-    )
 
 
 class WorldChoice(SpecModel):
@@ -297,8 +258,8 @@ class ScenarioContent(SpecModel):
         default=Planning(),
         description="Planning parameters of all steps that have none of their own.",
     )
-    ros2: Ros2Names = Field(
-        default=Ros2Names(), description="Names that `harness bridge` serves on the ROS 2 graph."
+    ros2: Annotated[KeyModel, PluginModel("ros2")] | None = Field(
+        default=None, description="Names that `harness bridge` serves on the ROS 2 graph."
     )
     deterministic: Flag = Field(
         default=True, description="`false` allows planners whose result cannot be repeated."

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, model_validator
 from harness.core.quantity import common_unit, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, count_of
 from harness.language.base import Count, Flag, Fraction, Share, SpecModel
+from harness.language.plugin_field import KeyModel, PluginModel
 
 VARIATION_KEYS = (
     *("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate"),
@@ -131,35 +132,6 @@ class RequiredRate(SpecModel):
     )
 
 
-class Search(SpecModel):
-    """How `harness search` looks for failures in the ranges of `randomize`.
-
-    Options of the command take precedence. `harness run` does not search: it runs the samples.
-    """
-
-    runs: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] = Field(
-        default=100, description="The number of runs, without those that shrink a failure."
-    )
-    start: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] = Field(
-        default=32,
-        description="The number of runs that are low-discrepancy samples, which show the rate.",
-    )
-    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] | None = Field(
-        default=None,
-        description="The seed of the search and of every run; the default is the file's `seed`.",
-    )
-    batch: Annotated[Count, Field(ge=2, le=1000)] | None = Field(
-        default=None,
-        description="The number of runs that the optimiser proposes together; the result depends "
-        "on it. The default is 4 + 3 ln(number of parameters), rounded down.",
-    )
-    minimise: str | None = Field(
-        default=None,
-        description="The `name` of the expectation whose margin the optimiser minimises; the "
-        "default is the worst margin of all.",
-    )
-
-
 def _grid_or_cases(value: object) -> object:
     if not value:
         raise ValueError("there is no case; `parametrize` is a grid, or a list of named cases")
@@ -219,7 +191,7 @@ class CaseKeys(SpecModel):
         default=None,
         description="The required success rate of the samples; without it every sample must pass.",
     )
-    search: Search | None = Field(
+    search: Annotated[KeyModel, PluginModel("search")] | None = Field(
         default=None,
         description="Settings of `harness search`, which looks for failures in the ranges of "
         "`randomize`.",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from harness.core.geometry import CollisionMode
+from harness.core.geometry import CollisionMode, Geometry, Shape
 from harness.core.surface_motion import SurfaceMotion
 from harness.language.base import (
     AngularVelocity,
@@ -25,12 +25,46 @@ from harness.language.base import (
     kind_of,
 )
 from harness.language.cameras import CameraSpec
-from harness.language.fixtures import HingeSpec, SlideSpec
-from harness.language.holes import HoleSpec
-from harness.language.markers import MarkerSpec
+from harness.language.plugin_field import KeyModel, PluginModel
 from harness.language.poses import Pose
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from harness.core.hole import Hole
+    from harness.core.spatial import SE3
+    from harness.core.world import WorldObject
+
 COLOR = "Red, green, blue, opacity from 0 to 1; or a name as in CSS: `red`."
+
+
+class ShapeKey(KeyModel):
+    """A key of a shape that stands for other shapes."""
+
+    def solid(self) -> Geometry:
+        """What planner and physics know of it."""
+        raise NotImplementedError
+
+    def printed(self, pose: SE3, name: str) -> tuple[Shape, ...]:
+        """What pictures show of it at a pose."""
+        raise NotImplementedError
+
+
+class HoleKey(KeyModel):
+    """The key of a box that has a hole."""
+
+    @property
+    def is_round(self) -> bool:
+        """Whether the mass of the box with the hole is unknown."""
+        raise NotImplementedError
+
+    def refuse_outside(self, box: tuple[float, float, float]) -> None:
+        """Check that a box has walls around the hole."""
+        raise NotImplementedError
+
+    def bored(self, whole: Shape) -> tuple[tuple[Shape, ...], Hole]:
+        """The shapes of a box with the hole, and the hole."""
+        raise NotImplementedError
 
 
 class BoxSpec(SpecModel):
@@ -39,7 +73,7 @@ class BoxSpec(SpecModel):
     size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
         description="The full size along x, y, z [m]."
     )
-    hole: HoleSpec | None = Field(
+    hole: Annotated[HoleKey, PluginModel("hole")] | None = Field(
         default=None, description="A hole from the upper face, along z, for a peg."
     )
 
@@ -148,7 +182,7 @@ class ShapeSpec(SpecModel):
     capsule: CapsuleSpec | None = None
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
-    marker: MarkerSpec | None = None
+    marker: Annotated[ShapeKey, PluginModel("marker")] | None = None
 
     @model_validator(mode="after")
     def _one_geometry(self) -> ShapeSpec:
@@ -170,38 +204,16 @@ class InertiaSpec(SpecModel):
     iyz: Number = 0.0
 
 
-class JointSpec(SpecModel):
+class PartKey(KeyModel):
     """A part of a static object that turns or slides: an object of its own, `cabinet/door`."""
 
-    one_of = ("hinge", "slide")
-
     name: Name = Field(description="The name of the joint; the part is called `OBJECT/NAME`.")
-    hinge: HingeSpec | None = Field(default=None, description="The part turns about this axis.")
-    slide: SlideSpec | None = Field(default=None, description="The part moves along this axis.")
-    shapes: Annotated[tuple[ShapeSpec, ...], Field(min_length=1)] = Field(
-        description="The geometries of the part, in the object's frame with the joint at 0. The"
-        " one whose name is `handle` is where the step `open` grasps it."
-    )
-    mass: Mass | None = Field(
-        default=None,
-        description="The mass of the part [kg]; the default follows from its volume at 1000"
-        " kg/m^3.",
-    )
-    visuals: tuple[ShapeSpec, ...] = Field(
-        default=(), description="The geometries that pictures show in place of the shapes."
-    )
-    center_of_mass: Xyz = Field(
-        default=(0.0, 0.0, 0.0),
-        description="The centre of mass in the object's frame [m]; the default follows from the"
-        " shapes.",
-    )
-    inertia: InertiaSpec | None = Field(
-        default=None, description="The inertia; the default is that of the solid shapes."
-    )
-    color: Color | None = Field(default=None, description=COLOR)
-    friction: SurfaceFriction | None = Field(
-        default=None, description="The friction of the part's surface."
-    )
+
+    def part(
+        self, spec: ObjectSpec, fixture: WorldObject, base_dir: Path, collision: CollisionMode
+    ) -> WorldObject:
+        """The part of a fixture, with every number known."""
+        raise NotImplementedError
 
 
 class ObjectSpec(SpecModel):
@@ -234,7 +246,7 @@ class ObjectSpec(SpecModel):
     capsule: CapsuleSpec | None = None
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
-    marker: MarkerSpec | None = None
+    marker: Annotated[ShapeKey, PluginModel("marker")] | None = None
     shapes: tuple[ShapeSpec, ...] = Field(
         default=(), description="The geometries of an object that has several."
     )
@@ -256,7 +268,7 @@ class ObjectSpec(SpecModel):
         default=None, description="The friction: the sliding coefficient alone, or all three."
     )
     color: Color | None = Field(default=None, description=COLOR)
-    joints: tuple[JointSpec, ...] = Field(
+    joints: tuple[Annotated[PartKey, PluginModel("joint")], ...] = Field(
         default=(),
         description="The parts of a `static` object that turn or slide: doors, drawers, lids.",
     )
@@ -318,7 +330,7 @@ class ObjectSpec(SpecModel):
             )
         boxes = [self.box, *(shape.box for shape in self.shapes)]
         holes = [box.hole for box in boxes if box is not None and box.hole is not None]
-        if not self.static and any(hole.diameter is not None for hole in holes):
+        if not self.static and any(hole.is_round for hole in holes):
             raise ValueError(
                 "the mass of a box with a round hole is not known: say `static: true`, or give the"
                 " hole a `size`"

@@ -127,9 +127,9 @@ def load_robot(
 
 def _is_bundled(spec: RobotSpec) -> bool:
     """Whether a robot follows from its specification alone, without files of the user."""
-    files = spec.urdf or spec.xacro or spec.mjcf or spec.kinematics or spec.args
+    files = spec.urdf or spec.xacro or spec.mjcf or spec.kinematics or spec.moveit or spec.args
     names = {name for name in (spec.model, spec.gripper) if name is not None}
-    return not files and names <= _catalogue().keys() and spec.moveit == type(spec.moveit)()
+    return not files and names <= _catalogue().keys()
 
 
 @dataclass(frozen=True)

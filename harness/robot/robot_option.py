@@ -71,8 +71,4 @@ def options_of(spec: RobotSpec) -> list[RobotOption]:
     Raises:
         RobotError: One is missing.
     """
-    return [robot_option(key) for key in KEYS if getattr(spec, key) != _default(key)]
-
-
-def _default(key: str) -> object:
-    return RobotSpec.model_fields[key].default
+    return [robot_option(key) for key in KEYS if getattr(spec, key) is not None]

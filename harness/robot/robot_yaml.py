@@ -15,8 +15,9 @@ from harness.language.base import Length, Name, RosName, Rpy, SpecModel, Xyz
 from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text
+from harness.language.plugin_field import PluginModel
 from harness.language.scenario import IkSolverName, JointLimits, StartState
-from harness.language.wrench_sensors import WrenchSensorSpec
+from harness.language.wrench_sensors import WrenchSensorKey
 
 FILE = "robot.yaml"
 
@@ -296,8 +297,8 @@ class RobotYaml(SpecModel):
         default_factory=dict[str, CameraFacts],
         description="The cameras on links of the robot, by name.",
     )
-    wrench_sensors: dict[Name, WrenchSensorSpec] = Field(
-        default_factory=dict[Name, WrenchSensorSpec],
+    wrench_sensors: dict[Name, Annotated[WrenchSensorKey, PluginModel("wrench_sensor")]] = Field(
+        default_factory=dict,
         description="The sensors of force and torque between links of the robot, by name.",
     )
     tracking: Tracking = Field(

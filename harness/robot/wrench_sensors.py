@@ -8,14 +8,14 @@ from dataclasses import replace
 from harness.core.errors import RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.core.wrench_sensor import WrenchSensor
-from harness.language.wrench_sensors import WrenchSensorSpec
+from harness.language.wrench_sensors import WrenchSensorKey
 from harness.robot.description import RobotDescription
 from harness.robot.mechanism import WORLD, Joint, Link
 from harness.robot.tree import carried_by
 
 
 def with_wrench_sensors(
-    description: RobotDescription, specs: Mapping[str, WrenchSensorSpec]
+    description: RobotDescription, specs: Mapping[str, WrenchSensorKey]
 ) -> RobotDescription:
     """The robot with a scenario's sensors, which replace those of the same name.
 

@@ -34,7 +34,7 @@ from harness.robot.description import RobotDescription
 from harness.session.cameras import all_cameras, check_cameras, check_videos
 from harness.session.options import check_planning, merged_options
 from harness.world.imported import ImportedWorld
-from harness.world.objects import ObjectUnusableError, resolve_object, resolve_parts, resolve_world
+from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
 
 MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
 RESERVED = {
@@ -265,7 +265,8 @@ class _Compiler:
         """The object and its moving parts, mesh files looked into; raises ObjectUnusableError."""
         collision = self.sources.loaded.scenario.collision
         obj = resolve_object(spec, pose, folder, collision)
-        objects = obj, *resolve_parts(spec, obj, folder, collision)
+        parts = (each.part(spec, obj, folder, collision) for each in spec.joints)
+        objects = (obj, *parts)
         for shape in (shape for each in objects for shape in each.shapes):
             if isinstance(shape.geometry, Mesh):
                 try:

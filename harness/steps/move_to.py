@@ -10,20 +10,31 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_goal
-from harness.cell.goals import group_of, path_constraints, pose_goal, resolve_goal
+from harness.cell.goals import group_of, pose_goal, resolve_goal
 from harness.cell.scope import At
 from harness.cell.step import Step
 from harness.core.amounts import JointUnits
-from harness.core.registry import absent_plugins, registry
 from harness.language.base import Name
 from harness.language.goals import GOAL_KEYS, GoalFields
-from harness.language.planning import PathConstraintsSpec
+from harness.language.plugin_field import KeyModel, PluginModel
 from harness.language.poses import Pose
-from harness.ports.goals import AnyGoal, JointGoal
+from harness.ports.goals import AnyGoal, JointGoal, PathConstraints
 from harness.ports.motions import FreeMotion
 from harness.robot.description import ALL_ARMS
 
 MOST_WAYS = 8  # pairs of solutions of both arms that are planned to, least joint motion first
+
+
+class ConstraintsKey(KeyModel):
+    """What holds along a motion."""
+
+    def check(self, group: str | None, at: At) -> None:
+        """Report names that the robot or the scene does not have."""
+        raise NotImplementedError
+
+    def resolved(self, cell: Cell) -> PathConstraints:
+        """The constraints in the world, for the present state of the cell."""
+        raise NotImplementedError
 
 
 class MoveTo(GoalFields, Step):
@@ -56,7 +67,7 @@ class MoveTo(GoalFields, Step):
         description="The goal is a pose of the TCP of each of these arms, which begin and end "
         "together; the arms' names are the keys. The default `group` is that of all arms.",
     )
-    path_constraints: PathConstraintsSpec | None = Field(
+    path_constraints: Annotated[ConstraintsKey, PluginModel("path_constraints")] | None = Field(
         default=None, description="Constraints that hold at every sample of the motion."
     )
 
@@ -75,7 +86,7 @@ class MoveTo(GoalFields, Step):
         for index, goal in enumerate(self.any_of or ()):
             check_goal(goal, self.group, At(at.scope, at.key("any_of", index)))
         if self.path_constraints is not None:
-            _check_constraints(self.path_constraints, self.group, at)
+            self.path_constraints.check(self.group, at)
 
     def _check_poses(self, poses: dict[str, Pose], at: At) -> None:
         """Report names of no arm, arms outside the group, and frames that do not exist."""
@@ -92,14 +103,14 @@ class MoveTo(GoalFields, Step):
                 message = f"the joints of '{arm}' are not in the group '{group}'"
                 at.scope.problems.add(place, message, needs=("robot",))
         if self.path_constraints is not None:
-            _check_constraints(self.path_constraints, group, at)
+            self.path_constraints.check(group, at)
 
     def execute(self, cell: Cell) -> None:
         """Plan from where the arm stands to the goal, time the path, track it."""
         cell.sync_scene()
         constraints = None
         if self.path_constraints is not None:
-            constraints = path_constraints(self.path_constraints, cell)
+            constraints = self.path_constraints.resolved(cell)
         if self.poses is not None:
             group = self.group or ALL_ARMS
             cell.move(group, FreeMotion(_goal_of_arms(self.poses, group, cell), constraints))
@@ -134,21 +145,3 @@ def _goal_of_arms(poses: dict[str, Pose], group: str, cell: Cell) -> AnyGoal:
     return AnyGoal(
         tuple(JointGoal(np.array([goal[name] for name in names])) for goal in goals[:MOST_WAYS])
     )
-
-
-def _check_constraints(constraints: PathConstraintsSpec, group_name: str | None, at: At) -> None:
-    scope = at.scope
-    if "constrained" not in registry("motion"):
-        hint = "; ".join(absent_plugins())
-        scope.problems.add(at.key("path_constraints"), "no plug-in plans with these here", hint)
-    band, box = constraints.orientation, constraints.position
-    if band is not None:
-        scope.check_link_or_held(band.link, at.key("path_constraints", "orientation", "link"))
-        at.check_pose(band.pose, "path_constraints", "orientation", "pose")
-    if box is not None:
-        scope.check_link_or_held(box.link, at.key("path_constraints", "position", "link"))
-        frame = at.key("path_constraints", "position", "center", "frame")
-        scope.check_frame(box.center.frame, frame)
-    group = scope.check_group(group_name, at.key("group"))
-    for name in constraints.joints or {}:
-        scope.check_joint(name, at.key("path_constraints", "joints", name), group)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from harness.core.errors import RobotError
-from harness.core.extras import absent_package
 from harness.core.files import is_file
 from harness.core.geometry import (
     Box,
@@ -29,19 +27,16 @@ from harness.core.slow_work import reported
 from harness.core.solids import is_inertia_of_a_body, point_inertia
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.core.world import Light, ObjectJoint, World, WorldObject
+from harness.core.world import Light, World, WorldObject
 from harness.language.world import (
     GEOMETRIES,
     FrictionSpec,
-    JointSpec,
     ObjectSpec,
     ShapeSpec,
     WorldSpec,
 )
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.mesh_file import shape_solid, with_hull
-from harness.world.bored_box import bored
-from harness.world.markers import plate, printed
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
 DEFAULT_COLOR: Rgba = (0.62, 0.66, 0.72, 1.0)
@@ -98,59 +93,10 @@ def _bored(
         if part.box is None or part.box.hole is None:
             given.append(shape)
             continue
-        around, hole = bored(shape, part.box.hole)
+        around, hole = part.box.hole.bored(shape)
         given += around
         holes.append(hole)
     return tuple(given), tuple(holes)
-
-
-def resolve_parts(
-    spec: ObjectSpec, fixture: WorldObject, base_dir: Path, collision: CollisionMode | None = None
-) -> tuple[WorldObject, ...]:
-    """The parts of a fixture that turn or slide, each an object of its own.
-
-    Raises:
-        ObjectUnusableError: As of `resolve_object`.
-    """
-    parts: list[WorldObject] = []
-    for each in spec.joints:
-        joint = _joint(each, fixture)
-        body = ObjectSpec(
-            name=f"{spec.name}/{each.name}",
-            shapes=each.shapes,
-            visuals=each.visuals,
-            mass=each.mass,
-            center_of_mass=each.center_of_mass,
-            inertia=each.inertia,
-            color=each.color or spec.color,
-            friction=spec.friction if each.friction is None else each.friction,
-        )
-        part = resolve_object(body, joint.pose(joint.start), base_dir, collision)
-        scenes = {"in_planning": fixture.in_planning, "in_simulation": fixture.in_simulation}
-        parts.append(replace(part, joint=joint, **scenes))
-    return tuple(parts)
-
-
-def _joint(spec: JointSpec, fixture: WorldObject) -> ObjectJoint:
-    motion = spec.hinge or spec.slide
-    assert motion is not None  # the model has one of them
-    axis = np.array(motion.axis, dtype=float)
-    x, y, z = (float(value) for value in axis / np.linalg.norm(axis))
-    return ObjectJoint(
-        fixture=fixture.name,
-        name=spec.name,
-        kind="slide" if spec.hinge is None else "hinge",
-        fixture_pose=tuple(map(float, fixture.pose.as_vector())),
-        axis=(x, y, z),
-        point=(0.0, 0.0, 0.0) if spec.hinge is None else spec.hinge.at,
-        lower=motion.range[0],
-        upper=motion.range[1],
-        start=motion.start,
-        friction=motion.friction,
-        damping=motion.damping,
-        stiffness=motion.stiffness,
-        rest=motion.rest,
-    )
 
 
 def _looks(
@@ -162,7 +108,7 @@ def _looks(
     looks: list[Shape] = []
     for part in spec.visuals or parts:
         shape = _shape(part, spec.color, base_dir)
-        looks += [shape] if part.marker is None else printed(part.marker, shape.pose, shape.name)
+        looks += [shape] if part.marker is None else part.marker.printed(shape.pose, shape.name)
     return tuple(looks)
 
 
@@ -200,9 +146,7 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
     if (solid := primitive(spec)) is not None:
         return solid
     if spec.marker is not None:
-        if missing := absent_package("cv2"):
-            raise ObjectUnusableError(f"its marker cannot be drawn: {missing}")
-        return plate(spec.marker)
+        return spec.marker.solid()
     if spec.mesh is not None:
         path = base_dir / spec.mesh.file
         if not is_file(path):

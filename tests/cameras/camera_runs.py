@@ -12,13 +12,12 @@ from harness.core.spatial import SE3
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.language.cameras import looking_at
-from harness.language.markers import MarkerSpec
 from harness.language.scenario import RobotSpec
 from harness.plugins.cameras.captures import take_pictures
+from harness.plugins.cameras.keys.marker import MarkerSpec
 from harness.plugins.cameras.looks import Look, merged_looks
 from harness.plugins.cameras.watched import looks_of_expectations
 from harness.robot.load import load_robot
-from harness.world.markers import plate, printed
 from tests.cameras.recorded_runs import GROUND, an_object
 from tests.judging.synthetic_run import make_run
 
@@ -49,7 +48,7 @@ def card(name, marker, pose):
     """A printed marker."""
     spec = MarkerSpec(**marker)
     thing = an_object(name, (1, 1, 1), (0, 0, 0), RED)
-    return replace(thing, shapes=(Shape(plate(spec)),), visuals=printed(spec, SE3.identity()),
+    return replace(thing, shapes=(Shape(spec.solid()),), visuals=spec.printed(SE3.identity(), ""),
                    pose=pose)  # fmt: skip
 
 

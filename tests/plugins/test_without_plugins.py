@@ -193,7 +193,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     done = core("check", file)
     assert done.returncode == 2
     assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
-    assert "no plug-in plans with these here" in done.stdout + done.stderr
+    assert "no plug-in applies this key here" in done.stdout + done.stderr
     (tmp_path / "box.obj").write_text(OBJ)
     file.write_text(
         "scenario: t\nrobot: open_manipulator_x\nsteps: [{wait: 1}]\n"

@@ -5,11 +5,10 @@ import pytest
 from harness.core.errors import RobotError
 from harness.core.resources import data_folder
 from harness.core.spatial import SE3
-from harness.language.markers import MarkerSpec
 from harness.language.scenario import RobotSpec
+from harness.plugins.cameras.keys.marker import MarkerSpec
 from harness.robot.load import load_robot
 from harness.session.prepare import prepare
-from harness.world.markers import plate, printed
 from tests.session.front_door import problems
 
 OM = "open_manipulator_x"
@@ -139,6 +138,6 @@ def test_a_marker_is_a_plate_to_planner_and_physics_and_black_boxes_to_the_eye(t
 
 
 def test_the_white_margin_is_one_cell_or_what_the_file_says():
-    assert plate(MarkerSpec(id=0, size=0.06)).size[0] == pytest.approx(0.08)
-    assert plate(MarkerSpec(id=0, size=0.06, margin=0.05)).size[0] == pytest.approx(0.16)
-    assert len(printed(MarkerSpec(id=0, size=0.06), SE3.identity())) > 1
+    assert MarkerSpec(id=0, size=0.06).solid().size[0] == pytest.approx(0.08)
+    assert MarkerSpec(id=0, size=0.06, margin=0.05).solid().size[0] == pytest.approx(0.16)
+    assert len(MarkerSpec(id=0, size=0.06).printed(SE3.identity(), "")) > 1

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from harness.core.registry import registry
-from harness.language.annotations import branches, is_model, spelling
+from harness.language.annotations import branches, is_model, plugin_model, spelling
 from harness.language.base import SpecModel
 from harness.language.expectation import KIND
 from harness.language.files.source import Loc
@@ -163,7 +163,7 @@ class PartialReader:
             plugin = next((each for each in arguments if isinstance(each, PluginField)), None)
             if plugin is not None:
                 return self._plugin(plugin, value, loc)
-            return self.part(arguments[0], value, loc)
+            return self.part(plugin_model(annotation) or arguments[0], value, loc)
         for branch in branches(annotation):
             part = self.part(branch, value, loc)
             if part is not ABSENT:

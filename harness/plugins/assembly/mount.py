@@ -12,7 +12,7 @@ from harness.core.errors import RobotOptionError
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.mount import MountSpec, RailSpec
+from harness.plugins.assembly.keys.mount import MountSpec, RailSpec
 from harness.robot.description import RobotDescription
 from harness.robot.groups import planning_groups
 from harness.robot.mechanism import WORLD, Inertial, Joint, Link, fixed_joint

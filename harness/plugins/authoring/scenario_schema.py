@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from pydantic_core import core_schema
 
+from harness.core.registry import registry
 from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields, TemporalFields
 from harness.language.language import (
@@ -24,7 +25,7 @@ from harness.language.language import (
     TEMPORAL,
     UNTIL,
 )
-from harness.language.plugin_field import MARK
+from harness.language.plugin_field import MARK, KeyModel
 from harness.language.scenario import Scenario
 from harness.language.step import STEPS, StepFields
 from harness.language.units import SHARE, written
@@ -75,7 +76,7 @@ def world_schema() -> Schema:
 
 
 def _schema_of(model: type[SpecModel], title: str) -> Schema:
-    models: list[type[SpecModel]] = [model]
+    models: list[type[SpecModel]] = [model, *registry(KeyModel.plugin_kind).values()]
     if model is Scenario:
         models += [*STEPS.values(), *_predicates_and_formula().values()]
     names, plain = models_json_schema(
@@ -117,7 +118,7 @@ def _written(schema: Any) -> Any:
         return schema
     part = cast("Schema", schema)
     if MARK in part:
-        return {"$ref": f"#/$defs/{part[MARK].capitalize()}"}
+        return {"$ref": f"#/$defs/{part[MARK]}"}
     result: Schema = {
         key: {name: _written(each) for name, each in cast("Schema", value).items()}
         if key == "properties"

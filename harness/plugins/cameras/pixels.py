@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.picture_files import decoded
-from harness.language.markers import MarkerName
+from harness.plugins.cameras.keys.marker import MarkerName
 
 
 def blob_pixels(

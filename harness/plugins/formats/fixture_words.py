@@ -8,13 +8,20 @@ from typing import Any, Literal
 
 import numpy as np
 
+from harness.core.registry import registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.world import ShapeSpec
+from harness.language.plugin_field import KeyModel
+from harness.language.world import PartKey, ShapeSpec
 from harness.plugins.formats.object_words import MassProperties, mass_words
 from harness.plugins.formats.plain_values import rounded, significant
 
 FARTHEST = 1.0  # [m], of a slide without limits
+
+
+def part_model() -> type[PartKey]:
+    """The model of a part, which another plug-in has."""
+    return registry(KeyModel.plugin_kind)["joint"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,9 @@ class MountOption(RobotOption):
         self, robot: RobotDescription, spec: RobotSpec, base_dir: Path
     ) -> tuple[RobotDescription, frozenset[str]]:
         """The robot on its pedestal and rails."""
+        from harness.plugins.assembly.keys.mount import MountSpec
         from harness.plugins.assembly.mount import mounted
 
         del base_dir
-        return (robot if spec.mount is None else mounted(robot, spec.mount)), frozenset()
+        assert isinstance(spec.mount, MountSpec)  # the model of the key
+        return mounted(robot, spec.mount), frozenset()

@@ -20,7 +20,7 @@ from harness.judging.window import NotObservable, Window
 from harness.judging.words import HARDLY_OBSERVED
 from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
 from harness.language.expectation import Quantity
-from harness.language.markers import MarkerName
+from harness.plugins.cameras.keys.marker import MarkerName
 from harness.plugins.cameras.pixels import blob_pixels, label_pixels, marker_pixels
 from harness.plugins.cameras.watched import WATCH_RATE, period
 from harness.recording.signals import CaptureRecord

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.language.variation import Search
 from harness.plugins.campaigns.failure_search.closeness import (
     UNKNOWN,
     Closeness,
@@ -19,6 +18,7 @@ from harness.plugins.campaigns.failure_search.closeness import (
 )
 from harness.plugins.campaigns.failure_search.evaluator import Sample
 from harness.plugins.campaigns.failure_search.space import Point, SearchSpace
+from harness.plugins.campaigns.keys.search import SearchSpec
 
 STEP_SIZE = 0.15  # first standard deviation of the optimiser, as a share of each range
 CONFIDENCE = 0.95  # the confidence of the interval of the rate
@@ -88,7 +88,7 @@ def explore(
     space: SearchSpace,
     evaluate: Evaluate,
     is_counted: Callable[[Sample], bool],
-    settings: Search,
+    settings: SearchSpec,
     seed: int,
 ) -> Exploration:
     """Search for failures of different kinds.
@@ -147,7 +147,7 @@ class _Search:
     space: SearchSpace
     evaluate: Evaluate
     is_counted: Callable[[Sample], bool]
-    settings: Search
+    settings: SearchSpec
     samples: list[Sample]
     failed: set[Expectation] = field(default_factory=set[Expectation])
 

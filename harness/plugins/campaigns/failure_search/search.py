@@ -10,12 +10,12 @@ from typing import Any
 from harness.core.errors import HarnessError, SpecError
 from harness.core.suggestion import did_you_mean
 from harness.language.reading.load import load_scenario
-from harness.language.variation import Search
 from harness.plugins.campaigns.failure_search.closeness import failure_kind, failure_text
 from harness.plugins.campaigns.failure_search.evaluator import Evaluator, OnRun, Sample
 from harness.plugins.campaigns.failure_search.explore import Exploration, explore
 from harness.plugins.campaigns.failure_search.shrink import shrink
 from harness.plugins.campaigns.failure_search.space import Point, SearchSpace, search_space
+from harness.plugins.campaigns.keys.search import SearchSpec
 from harness.suite.cases import read_ahead
 from harness.suite.discovery import UsageError
 from harness.suite.header import read_header
@@ -38,7 +38,7 @@ class SearchRequest:
     file: Path
     overrides: Mapping[str, str]
     case: str
-    settings: Search
+    settings: SearchSpec
     workers: int = 1
     hard_cap: float | None = None
 
@@ -67,7 +67,8 @@ class SearchRequest:
             file, {**_case_overrides(file, case, variation), **overrides}
         ).scenario
         given = {name: value for name, value in settings.items() if value is not None}
-        stated = (scenario.search or Search()).model_copy(update=given)
+        search = scenario.search if isinstance(scenario.search, SearchSpec) else SearchSpec()
+        stated = search.model_copy(update=given)
         names, minimise = scenario.expectation_names(), stated.minimise
         if minimise is not None and minimise not in names:
             known = f"; {did_you_mean(minimise, names, 'names')}" if names else ""

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
-from harness.language.world import JointSpec, LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
-from harness.plugins.formats.fixture_words import PartJoint, on_fixture
+from harness.language.world import LightSpec, ObjectSpec, PartKey, PhysicsSpec, WorldSpec
+from harness.plugins.formats.fixture_words import PartJoint, on_fixture, part_model
 from harness.plugins.formats.mjcf.elements import Elements
 from harness.plugins.formats.mjcf.shapes import GeomReader
 from harness.plugins.formats.mjcf_robot.compiled import compile_mjcf, driven_trees
@@ -266,7 +266,7 @@ class _Scene:
             whole[name] = item.model_copy(update=update)
         return list(whole.values())
 
-    def _part(self, body: int, base: SE3) -> JointSpec | None:
+    def _part(self, body: int, base: SE3) -> PartKey | None:
         """A body and what it carries as a part on its joint; None where nothing of it touches."""
         model, reader, element = self.reader.model, self.reader, self._element(body)
         carried = [each for each in range(body, model.nbody) if self._is_below(each, body)]
@@ -294,7 +294,7 @@ class _Scene:
         mass = together([self._mass(each).placed(on_base[each]) for each in carried])
         looks = [shape.model_copy(update={"friction": None}) for shape in drawn]
         same = len(looks) == len(touching) and looks == touching
-        return validated(JointSpec, joint.words(touching, [] if same else looks, mass), element)
+        return validated(part_model(), joint.words(touching, [] if same else looks, mass), element)
 
     def _is_below(self, body: int, top: int) -> bool:
         while body > top:

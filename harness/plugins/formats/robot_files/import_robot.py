@@ -9,6 +9,7 @@ from pathlib import Path
 from harness.core.geometry import CollisionMode
 from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
+from harness.plugins.formats.keys.moveit import MoveItFiles
 from harness.plugins.formats.robot_files.checked_srdf import checked_srdf
 from harness.plugins.formats.robot_files.default_group import default_srdf
 from harness.plugins.formats.robot_files.imported_files import (
@@ -82,8 +83,9 @@ def _check_limits(spec: RobotSpec, urdf: Urdf, base_dir: Path) -> None:
         SpecError: The file has mistakes, or names joints that do not exist.
         RobotError: It does not exist.
     """
-    if spec.moveit.joint_limits is not None and spec.gripper is None:
-        path = find_file(spec.moveit.joint_limits, "moveit", base_dir, ())
+    files = spec.moveit if isinstance(spec.moveit, MoveItFiles) else MoveItFiles()
+    if files.joint_limits is not None and spec.gripper is None:
+        path = find_file(files.joint_limits, "moveit", base_dir, ())
         with_joint_limits(urdf.joints, path, urdf.name, [])
 
 

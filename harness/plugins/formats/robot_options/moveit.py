@@ -20,11 +20,13 @@ class MoveItOption(RobotOption):
         self, robot: RobotDescription, spec: RobotSpec, base_dir: Path
     ) -> tuple[RobotDescription, frozenset[str]]:
         """The robot with the limits of the files, and the joints with an acceleration there."""
+        from harness.plugins.formats.keys.moveit import MoveItFiles
         from harness.plugins.formats.robot_files import moveit_files
         from harness.robot.find_file import find_file
         from harness.robot.urdf.write import write_urdf
 
         given, files = frozenset[str](), spec.moveit
+        assert isinstance(files, MoveItFiles)  # the model of the key
         if files.joint_limits is not None:
             path, notes = find_file(files.joint_limits, "moveit", base_dir, ()), list(robot.notes)
             joints, given = moveit_files.with_joint_limits(robot.joints, path, robot.name, notes)

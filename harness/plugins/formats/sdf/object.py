@@ -8,7 +8,8 @@ from typing import Any
 from harness.core.errors import collected
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
-from harness.language.world import JointSpec, ObjectSpec, ShapeSpec
+from harness.language.world import ObjectSpec, PartKey, ShapeSpec
+from harness.plugins.formats.fixture_words import part_model
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import pose_spec
 from harness.plugins.formats.sdf.bodies import SdfBody, SdfJoint, SdfLink
@@ -38,7 +39,7 @@ def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
     return validated(ObjectSpec, {**words, **look_words(shapes, visuals)}, first.element)
 
 
-def part_of(body: SdfBody, joint: SdfJoint, fixture: SE3, reader: ShapeReader) -> JointSpec | None:
+def part_of(body: SdfBody, joint: SdfJoint, fixture: SE3, reader: ShapeReader) -> PartKey | None:
     """A body on its hinge or slide; None, with a note, for one that touches nothing.
 
     Args:
@@ -57,7 +58,7 @@ def part_of(body: SdfBody, joint: SdfJoint, fixture: SE3, reader: ShapeReader) -
         lower, upper = motion.usable_limits
         message = f"the joint '{joint.name}' is limited to {lower:g} to {upper:g} here"
         reader.notes.add(joint.element.place, message)
-    return validated(JointSpec, motion.words(shapes, visuals, together(masses)), joint.element)
+    return validated(part_model(), motion.words(shapes, visuals, together(masses)), joint.element)
 
 
 def _contents(

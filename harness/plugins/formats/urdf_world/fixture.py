@@ -11,8 +11,8 @@ import numpy as np
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement, read_xml
-from harness.language.world import JointSpec, ObjectSpec, ShapeSpec, WorldSpec
-from harness.plugins.formats.fixture_words import PartJoint, on_fixture
+from harness.language.world import ObjectSpec, PartKey, ShapeSpec, WorldSpec
+from harness.plugins.formats.fixture_words import PartJoint, on_fixture, part_model
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
@@ -75,7 +75,7 @@ class _Fixture:
         looks = look_words(shapes, visuals) if shapes or visuals else {}
         return validated(ObjectSpec, words | looks, self._root)
 
-    def _part(self, joint: Joint) -> JointSpec | None:
+    def _part(self, joint: Joint) -> PartKey | None:
         """What a joint moves; None where nothing of it touches, which is noted."""
         urdf, element = self._urdf, self._urdf.elements["joint", joint.name]
         on_joint = [
@@ -121,7 +121,7 @@ class _Fixture:
         ]
         words = part.words(shapes, [] if visuals == shapes else visuals)
         words |= mass_words(together(masses)) if masses else {}  # else it follows from the volume
-        return validated(JointSpec, words, element)
+        return validated(part_model(), words, element)
 
     def _shapes(self, links: Sequence[Link]) -> tuple[list[ShapeSpec], list[ShapeSpec]]:
         """The shapes of links that touch, and those that are drawn, in the root's frame."""

@@ -9,7 +9,8 @@ from typing import ClassVar
 
 from harness.cell.program_part import ProgramPart
 from harness.cell.scope import Problems
-from harness.language.scenario import ControllerKeys, Ros2Names, ScenarioContent
+from harness.language.scenario import ScenarioContent
+from harness.plugins.ros.keys.ros2 import ControllerKeys, Ros2Names
 from harness.robot.description import RobotDescription
 
 OWNERS = {"arm_controllers": "the arm's", "gripper_controller": "the gripper's"}
@@ -54,13 +55,14 @@ class Controllers(ProgramPart):
 
         Every controller needs a name of its own.
         """
-        given = _given_names(robot, scenario.ros2, problems)
+        names = scenario.ros2 if isinstance(scenario.ros2, Ros2Names) else Ros2Names()
+        given = _given_names(robot, names, problems)
         by_arm = {
             arm: _of_arm(each, given.get(arm, ControllerKeys()))
             for arm, each in (robot.of_arm or {"": robot}).items()
         }
         _refuse_clash(by_arm, given, problems)
-        return ControllerNames(by_arm, scenario.ros2.prefix or "")
+        return ControllerNames(by_arm, names.prefix or "")
 
 
 def _given_names(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
@@ -18,6 +18,7 @@ from harness.language.base import (
     SpecModel,
     kind_of,
 )
+from harness.language.plugin_field import KeyModel
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -65,9 +66,10 @@ class RailSpec(SpecModel):
         return given[0] / length, given[1] / length, given[2] / length
 
 
-class MountSpec(SpecModel):
+class MountSpec(KeyModel):
     """What stands between the world and the arm: a pedestal, then rails one on the other."""
 
+    key: ClassVar[str] = "mount"
     some_of = ("rail", "pedestal")
 
     rail: (

@@ -1,0 +1,1 @@
+"""Keys of a file about how robots are set up."""

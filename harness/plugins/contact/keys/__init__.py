@@ -1,0 +1,1 @@
+"""Keys of a file about work in contact."""

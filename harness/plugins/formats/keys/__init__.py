@@ -1,0 +1,1 @@
+"""Keys of a file that name files of other programs."""

@@ -1,0 +1,1 @@
+"""Keys of steps about how an arm moves."""
