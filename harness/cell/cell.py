@@ -13,7 +13,7 @@ from harness.cell.step import Step
 from harness.core.camera import Camera
 from harness.core.errors import StepFailed
 from harness.core.trajectory import JointTrajectory
-from harness.ports.external import ExternalControl
+from harness.ports.external import ExternalSession
 from harness.ports.motion_planning import MotionPlan, MotionPlanner, MotionRequest, PlanningOptions
 from harness.ports.motions import PlannedMotion
 from harness.recording.execution_failures import TimeoutFailure
@@ -33,7 +33,7 @@ class Cell(Holding):
         default_factory=list[Sequence[tuple[str, str]]]
     )
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
-    external: ExternalControl | None = None
+    external: ExternalSession | None = None
     faults: dict[str, int] = field(default_factory=dict[str, int])
 
     @property

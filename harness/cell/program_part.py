@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
+from harness.cell.program import Program
 from harness.cell.scope import Problems
 from harness.core.registry import Plugin, registry
 from harness.language.scenario import ScenarioContent
 from harness.robot.description import RobotDescription
 
 
-class ProgramPart(Plugin, ABC):
+class ProgramPart(Plugin):
     """A part of every program, `Program.parts[name]`, which the same plug-in reads."""
 
     plugin_kind: ClassVar[str] = "program_part"
 
-    @abstractmethod
     def resolve(
         self, scenario: ScenarioContent, robot: RobotDescription, problems: Problems
     ) -> object:
         """The part; mistakes of the scenario are added to the problems."""
+
+    def remarks(self, program: Program) -> Iterable[str]:
+        """What the scenario allows and probably does not intend."""
+        del program
+        return ()
 
 
 def resolved_parts(

@@ -12,7 +12,7 @@ from harness.cell.runner import End, Failure, OnStep, RunEndedError
 from harness.cell.scene_state import Belief, Presence, StepNotes
 from harness.core.details import Details
 from harness.core.errors import StepFailed
-from harness.ports.external import ExternalControl
+from harness.ports.external import ExternalSession
 from harness.ports.planning import PlanningPorts
 from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
@@ -122,7 +122,7 @@ class ProgramExecution:
         on_step: OnStep,
         *,
         keep_going: bool = False,
-        external: ExternalControl | None = None,
+        external: ExternalSession | None = None,
     ) -> None:
         """Put the world's objects into the scene.
 

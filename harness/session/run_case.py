@@ -92,9 +92,10 @@ class _Case:
             )
             execution.run(prepared.program.steps)
             done = execution.finish()
-        builder = RunBuilder(self.request, prepared, done, simulator, session.commands)
+        commands = session.commands if session is not None else ()
+        builder = RunBuilder(self.request, prepared, done, simulator, commands)
         self.pictures.executed(builder.record)
-        return builder, session.refusal()
+        return builder, session.refusal() if session is not None else ""
 
     def observe(self, builder: RunBuilder) -> Run:
         """The run, with what is measured on it and the pictures that verdicts read."""

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 import numpy as np
 
 from harness.core.errors import ModelRefused, Problem, RobotError, SpecError
+from harness.ports.external import ExternalSession
 from harness.ports.scene import Touch
 from harness.ports.simulation import RecordingSimulator
-from harness.session.external import ExternalSession, NoPrograms
 from harness.session.observation.findings import overlap_text
 from harness.session.prepare import Prepared, prepare
 from harness.session.run_request import RunRequest
@@ -34,13 +34,14 @@ class Start(Generic[S_co]):
     Attributes:
         simulator: The simulator at the start state, or a robot.
         draw: Number of the sample's draw; 0 for the first.
-        open_session: Makes the session of the programs to which a step hands the robot over.
+        open_session: Makes the session of the programs to which a step hands the robot over; None
+            where there are none.
     """
 
     prepared: Prepared
     simulator: S_co
     draw: int = 0
-    open_session: Callable[[], ExternalSession] = NoPrograms
+    open_session: Callable[[], ExternalSession | None] = lambda: None
 
 
 def start_simulated(request: RunRequest, clock: Clock) -> Start[MujocoSimulator]:

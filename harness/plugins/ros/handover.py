@@ -15,8 +15,8 @@ from harness.core.errors import HarnessError
 from harness.judging.ends import holds_now
 from harness.language.expectation import ExpectationFields
 from harness.plugins.ros.control.cell import ExternalCell
+from harness.plugins.ros.external_programs import ExternalRequest, ExternalResult
 from harness.plugins.ros.moveit.client_scene import ClientScene
-from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.read_run import read_run
 from harness.recording.stored_run import RESOLVED

@@ -18,6 +18,7 @@ from harness.plugins.ros.camera_topics import CameraTopics
 from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.controller_manager import controller_managers
 from harness.plugins.ros.endpoints import Qos
+from harness.plugins.ros.external_programs import ExternalRequest, ExternalResult
 from harness.plugins.ros.handover import HandOver
 from harness.plugins.ros.interfaces import stamp
 from harness.plugins.ros.launch import Program, start_program
@@ -28,7 +29,6 @@ from harness.plugins.ros.prefix import Prefix
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.state_topics import StateTopics
 from harness.plugins.ros.wiring import Wiring
-from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest

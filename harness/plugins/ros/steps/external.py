@@ -14,9 +14,15 @@ from harness.core.errors import StepFailed
 from harness.judging.ends import check_end
 from harness.language.base import Name, PositiveDuration
 from harness.language.expectation import AnyExpectation, ExpectationFields
-from harness.ports.external import ExternalRequest, ExternalResult
+from harness.plugins.ros.external_programs import ExternalRequest, ExternalResult
+from harness.ports.simulation import RecordingSimulator
 from harness.recording.execution_failures import TimeoutFailure
 
+NO_PROGRAMS = (
+    "this step hands the arm to ROS 2 nodes; run the scenario with"
+    " `harness grade SCENARIO --node COMMAND`, with `harness bridge SCENARIO`, or with"
+    " `harness run SCENARIO --node COMMAND`"
+)
 DEFAULT_TIMEOUT = 60.0  # [s] of simulation
 
 
@@ -67,8 +73,12 @@ class External(Step):
             StepFailed: TIMED_OUT, when `until` did not become true; COMMUNICATION_FAILURE, when
                 nothing outside can be reached.
         """
-        if cell.external is None:
+        if not isinstance(cell.simulator, RecordingSimulator):  # nothing moves: a prediction
             return
+        from harness.plugins.ros.handover import HandOver  # loads the physics
+
+        if not isinstance(cell.external, HandOver):
+            raise StepFailed("COMMUNICATION_FAILURE", NO_PROGRAMS)
         timeout, step = self.timeout or DEFAULT_TIMEOUT, cell.current
         begin = cell.simulator.time
         request = ExternalRequest(step.id, step.line, timeout, self.until, self.launch or "", cell)

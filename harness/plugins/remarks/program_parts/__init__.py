@@ -1,0 +1,1 @@
+"""Remarks on a scenario before it is carried out."""
