@@ -19,6 +19,7 @@ class Disturbance:
         deviation: The standard deviation of the noise of measured positions [rad or m].
         waiting: Controls that are delayed, the oldest first, shape (n, m).
         noise: The noise of the most recent samples, shape (n, m).
+        sources: Where the noise of how many joints each comes from.
     """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
@@ -26,7 +27,7 @@ class Disturbance:
         self.grip_share: dict[int, float] = {}
         self.deviation, self.latency = 0.0, 0.0
         self.waiting = np.empty((0, len(physics.actuated)))
-        self.rng = np.random.default_rng(0)
+        self.sources = [(np.random.default_rng(0), len(physics.actuated))]
         self.noise = np.zeros((1, len(physics.actuated)))
 
     def distorted(self, controls: FloatArray, position_share: FloatArray) -> FloatArray:
@@ -55,4 +56,4 @@ class Disturbance:
 
     def draw(self, samples: int) -> FloatArray:
         """Noise of samples to come, shape (samples, m)."""
-        return self.rng.normal(0.0, self.deviation, (samples, self.noise.shape[1]))
+        return np.hstack([rng.normal(0.0, self.deviation, (samples, n)) for rng, n in self.sources])

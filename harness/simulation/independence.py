@@ -1,9 +1,8 @@
 """What keeps a robot's motion equal to the bit, whatever other robots of its cell do far away.
 
 MuJoCo solves each island of bodies that touch by itself, but two things depend on the whole model.
-A contact's speed is a sum over all joints, in `LANES` partial sums by the joints' numbers; and one
-comparison of costs decides for all whether the solver begins at its last solution. In a cell each
-robot has a multiple of `LANES` joints, and a wheel that a spring presses on its stop decides it.
+A contact's speed is a sum over all joints, in `LANES` partial sums: robots have multiples of these.
+And one comparison decides whether the solver begins at its last solution: a wheel at its stop does.
 """
 
 # pyright: reportAttributeAccessIssue=false

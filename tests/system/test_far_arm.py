@@ -105,7 +105,18 @@ STACKS = PICK.replace(
     + "steps:\n",
 )
 """With nine objects, whose matrices MuJoCo makes sparse."""
-SCENES = {"pick": PICK, "push": PUSH, "press": PRESS, "belt": BELT, "many objects": STACKS}
+NOISE = PICK.replace(
+    "steps:\n",
+    "steps:\n  - inject: {sensor_noise: 0.02 deg, command_latency: 4 ms}\n    robot: near\n",
+)
+SCENES = {
+    "pick": PICK,
+    "noise": NOISE,
+    "push": PUSH,
+    "press": PRESS,
+    "belt": BELT,
+    "many objects": STACKS,
+}
 CASES = [("pick", far) for far in FAR] + [
     (scene, far)
     for scene in list(SCENES)[1:]

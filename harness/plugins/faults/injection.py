@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from zlib import crc32
 
 import numpy as np
 
@@ -71,7 +72,11 @@ class Injection:
         """Add white noise to the positions that the servos and the tolerance checks measure."""
         disturbance = self._disturbance
         before, disturbance.deviation = disturbance.deviation, deviation
-        disturbance.rng = np.random.default_rng(seed)
+        names, joints = self._physics.description.joint_names, self._physics.actuated
+        seeds = [[seed, crc32(names[joint].encode())] for joint in joints]
+        sources = [(np.random.default_rng(each), 1) for each in seeds]
+        is_cell = self._physics.description.is_cell  # joints of other robots draw nothing of it
+        disturbance.sources = sources if is_cell else [(np.random.default_rng(seed), len(joints))]
         disturbance.noise = disturbance.draw(1)
         return before
 

@@ -39,7 +39,7 @@ CHANGED_IN_PLACE = (
 )
 """Arrays of the model that objects, surfaces, welds, grips and faults write to during a run."""
 
-OF_FAULTS = ("grip_share", "deviation", "latency", "waiting", "rng", "noise")
+OF_FAULTS = ("grip_share", "deviation", "latency", "waiting", "sources", "noise")
 """Attributes of the active faults."""
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
