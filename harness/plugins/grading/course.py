@@ -118,7 +118,7 @@ def run_work(exercise: Exercise, file: Path, report: Path) -> CaseResult:
     assert loaded.scenario is not None  # the test of a solver has no run
     if loaded.model.node is None:
         source = merged_source(file, loaded.scenario, loaded.model.takes)
-        refuse_scene_verbs(read_scenario(file, text=source), str(file), loaded.scenario)
+        refuse_scene_verbs(read_scenario(file, text=source), loaded.scenario)
         return run_in_process(RunRequest(file, source=source, report_dir=report))
     request = RunRequest(loaded.scenario.resolve(), report_dir=report.resolve())
     with chdir(file.parent):  # the command of the node names a file in the student's folder

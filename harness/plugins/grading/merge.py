@@ -9,7 +9,7 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from harness.cell.step import Step
-from harness.core.errors import Problem, SpecError
+from harness.core.errors import SpecError
 from harness.language.files.source import Located, Place, Source
 from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.reading.load import Reading, load_scenario
@@ -64,23 +64,25 @@ def scene_verbs(given: BaseModel, graded: BaseModel) -> list[str]:
     return sorted({step.verb for step in changing} - known)
 
 
-def refuse_scene_verbs(reading: Reading, name: str, scenario: Path) -> None:
+def refuse_scene_verbs(reading: Reading, scenario: Path) -> None:
     """Refuse steps of a student that change the scene where the assignment has none of the kind.
 
     Args:
         reading: The result of reading the merged text.
-        name: What reports call the submission.
         scenario: The scenario file of the assignment.
 
     Raises:
-        SpecError: It names the first of them.
+        SpecError: It names the first of them, with its line.
     """
     if reading.loaded is None:
         return
     verbs = scene_verbs(reading.loaded.scenario, load_scenario(scenario).scenario)
     if verbs:
         message = f"the step `{verbs[0]}` changes the scene, which this exercise does not do"
-        raise SpecError([Problem(name, 0, 0, message, "leave the step out")])
+        steps = enumerate(reading.loaded.scenario.steps)
+        named = (i for i, step in steps if verbs[0] in {each.verb for each in steps_in(step)})
+        place = ("steps", next(named, 0))
+        raise SpecError([reading.loaded.lines.problem(place, message, "leave the step out")])
 
 
 def steps_in(value: object) -> Iterator[Step]:

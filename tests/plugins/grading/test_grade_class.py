@@ -60,7 +60,7 @@ def test_the_table_says_why_points_were_lost(graded):
     assert remarks["perfect"] == ""
     assert remarks["constant"] == f"hidden case 1: {EXERCISE}"
     assert re.search(r"TCP is off its target by \d+\.\d mm of 5.0 mm", remarks["low"])
-    assert "`inject` changes the scene" in remarks["moves"]
+    assert remarks["moves"].startswith("moves.yaml:5:5: the step `inject` changes the scene")
     assert "cannot be unpacked" in remarks["broken"]
     assert "typo.scenario.yaml:5:" in remarks["typo"]
 
@@ -139,7 +139,11 @@ def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_s
         ("low", "the TCP is at the target: failed by", "→ The TCP is the point between"),
         ("constant", "Everything holds in the case that you see", "→ Take what varies from"),
         ("typo", "Line 5 of your file", "→ Did you mean `move_to`?"),
-        ("moves", "`inject` changes the scene", "→ Leave the step out"),
+        (
+            "moves",
+            "Line 5 of your file, - inject: {stuck_joint: elbow_joint}: the step `inject`",
+            "→ Leave the step out",
+        ),
         ("broken", "cannot be graded", "→ Hand in what the exercise requires"),
         ("perfect", "", "→ Every expectation holds"),
     ],

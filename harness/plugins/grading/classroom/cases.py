@@ -102,7 +102,7 @@ def _scenario(case: GradedCase, notify: Notify) -> CaseResult:
     name, takes = case.main.name, case.assignment.model.takes
     source = merged_source(case.main, case.file, takes, name)
     reading = read_scenario(case.file, case.overrides, case.seed, source)
-    refuse_scene_verbs(reading, name, case.file)
+    refuse_scene_verbs(reading, case.file)
     case = replace(case, source=source)
     result = run_job(case, notify)
     if result.outcome == "error" and case.report_dir is not None and not case.report_dir.exists():

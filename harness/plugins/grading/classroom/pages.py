@@ -78,10 +78,8 @@ def distribution(grade: ClassGrade) -> list[tuple[float, float, int]]:
 
 def _class_html(grade: ClassGrade, folder: Path) -> str:
     students, cases = grade.students, len(grade.assignment.model.hidden)
-    links = {
-        each.submission.folder: f"{STUDENTS}/{quote(each.submission.folder)}/{PAGE}"
-        for each in students
-    }
+    names = [each.submission.folder for each in students]
+    links = {name: f"{STUDENTS}/{quote(name)}/{PAGE}" for name in names}
     failed_hidden = {each.submission.folder: _failed_hidden(each, folder) for each in students}
     return bundle.rendered(
         FOLDER / "class.html",
