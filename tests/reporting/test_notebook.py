@@ -1,5 +1,6 @@
 """A result as a notebook shows it."""
 
+from contextlib import closing
 from dataclasses import replace
 
 import cv2
@@ -8,6 +9,7 @@ import pytest
 
 from harness.reporting.notebook import result_html
 from harness.reporting.suite.failure_picture import deciding_still
+from tests.reporting.browser import new_context
 from tests.reporting.suites import BROKEN, HOSTILE, STUCK, failed, passed
 
 
@@ -17,6 +19,24 @@ def test_a_result_shows_its_outcome_and_its_verdicts():
     assert "lifted cube" in shown
     assert "passed by 10.0 mm" in shown
     assert "<pre>" not in shown
+
+
+@pytest.mark.parametrize("ground", ["#ffffff", "#111111"])
+def test_signs_and_links_are_read_in_light_and_dark_notebooks(tmp_path, ground, browser):
+    """A white sign on green or red, and a link in the colour of the text."""
+    text = result_html(replace(failed(1), page=str(tmp_path / "report.html")))
+    ink = "#000000" if ground == "#ffffff" else "#dddddd"
+    with closing(new_context(browser, offline=True)) as context:
+        opened = context.new_page()
+        opened.set_content(f'<body style="background:{ground};color:{ink}">{text}')
+        looks = "(each) => [getComputedStyle(each).color, getComputedStyle(each).backgroundColor]"
+        signs = {
+            tuple(each.evaluate(looks)) for each in opened.locator("td > span:only-child").all()
+        }
+        assert signs == {("rgb(255, 255, 255)", "rgb(26, 127, 55)"),
+                         ("rgb(255, 255, 255)", "rgb(207, 34, 46)")}  # fmt: skip
+        link = opened.locator("a").evaluate(looks)[0]
+        assert link == opened.locator("body").evaluate(looks)[0]
 
 
 def test_a_failure_shows_its_causes_its_picture_and_its_page(tmp_path):
@@ -56,7 +76,7 @@ def test_what_does_not_hold_stands_first_and_no_line_is_wider_than_the_cell():
     first, second = passed(0), failed(1)
     both = replace(second, verdicts=(*first.verdicts, *second.verdicts))
     shown = result_html(both)
-    assert shown.index(">✕</td>") < shown.index(">✓</td>")
+    assert shown.index(">✕</span>") < shown.index(">✓</span>")
     assert '<pre style="white-space:pre-wrap">' in shown
 
 
