@@ -212,9 +212,10 @@ def test_a_row_without_a_bar_says_why(tmp_path, visit):
     record = SuiteRecord("failed", [SuiteCase(each) for each in results])
     page = visit(write_suite(tmp_path, record, 1)[0], "#sort=number").page
     said = [each.replace("\n", " ") for each in page.locator("td.nearest").all_inner_texts()]
+    assert page.locator("[title^='no bar: its limit is 0']").inner_text() == "10.0 mm"
     assert said == [
         "expects nothing",
-        "10.0 mm (no bar: its limit is 0) turned by 30.0°",
+        "10.0 mm turned by 30.0°",
         "a step failed as expected",
         "expects nothing",
         "a step failed; what was judged holds",

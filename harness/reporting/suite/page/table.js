@@ -122,7 +122,7 @@ function inDegrees(text) {
 /** How much of the allowance was used, and the margin. */
 function allowance(row) {
   const margin = element("span.number", {}, inDegrees(row.margin));
-  if (row.used === null) return element("span", {}, margin, element("span.quiet", {}, " (no bar: its limit is 0)"));
+  if (row.used === null) return element("span", { title: "no bar: its limit is 0, of which nothing is a share" }, margin);
   const percent = Math.round(100 * row.used);
   const tone = !row.holds ? "bad" : percent >= NEARLY_USED ? "warn" : "good";
   const text = `${percent} % of the allowance used${tone === "warn" ? ": nearly all of it" : ""}`;
