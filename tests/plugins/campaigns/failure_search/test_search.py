@@ -98,7 +98,11 @@ def test_the_page_of_a_search_says_what_was_tried_and_each_command_runs(tmp_path
     order = "[...document.querySelectorAll('main > section')].map((each) => each.id)"
     assert page.evaluate(order)[:2] == ["changes", "tried"]
     change = page.locator(".change").first
-    assert change.locator(".replay").count() == 2
+    replays = [each.get_attribute("href") for each in change.locator(".replay").all()]
+    assert [each.partition("#")[0] for each in replays] == [
+        "nominal/report.html", "failure1/report.html",
+    ]  # fmt: skip
+    assert all(each.endswith("suite=../index.html") for each in replays), "they lead back"
     assert change.locator(".moved > b").count() == 1, "where the value stands in its range"
     both = change.locator("[data-copy]").last.inner_text()
     reports = page_file.parent / "nominal", page_file.parent / "failure1"
