@@ -83,7 +83,6 @@ class Program:
         cameras: The cameras of robot, world and scenario, by name.
         step_locs: Where each step is written, by its path.
         object_locs: Where each object is written, by name; the world's own are at `world`.
-        videos: Cameras that are recorded all through the run, and their frames a second.
         parts: What plug-ins have resolved of the scenario, by their names.
     """
 
@@ -97,7 +96,6 @@ class Program:
     step_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
     object_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
-    videos: Mapping[str, float] = field(default_factory=dict[str, float])
     parts: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     def all_steps(self) -> Iterator[ProgramStep]:

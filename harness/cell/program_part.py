@@ -6,10 +6,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
 from harness.cell.program import Program
-from harness.cell.scope import Problems
+from harness.cell.scope import Scope
 from harness.core.registry import Plugin, registry
 from harness.language.scenario import ScenarioContent
-from harness.robot.description import RobotDescription
 
 
 class ProgramPart(Plugin):
@@ -17,10 +16,8 @@ class ProgramPart(Plugin):
 
     plugin_kind: ClassVar[str] = "program_part"
 
-    def resolve(
-        self, scenario: ScenarioContent, robot: RobotDescription, problems: Problems
-    ) -> object:
-        """The part; mistakes of the scenario are added to the problems."""
+    def resolve(self, scenario: ScenarioContent, scope: Scope) -> object:
+        """The part; mistakes of the scenario are added to the problems of the scope."""
 
     def remarks(self, program: Program) -> Iterable[str]:
         """What the scenario allows and probably does not intend."""
@@ -28,9 +25,7 @@ class ProgramPart(Plugin):
         return ()
 
 
-def resolved_parts(
-    scenario: ScenarioContent, robot: RobotDescription, problems: Problems
-) -> Mapping[str, Any]:
+def resolved_parts(scenario: ScenarioContent, scope: Scope) -> Mapping[str, Any]:
     """The parts of all plug-ins, by their names."""
     parts = registry(ProgramPart.plugin_kind).items()
-    return {name: part().resolve(scenario, robot, problems) for name, part in parts}
+    return {name: part().resolve(scenario, scope) for name, part in parts}

@@ -130,18 +130,6 @@ class CameraSpec(CameraFields):
         return self.camera(self.name, self.pose.frame, pose)
 
 
-class VideoSpec(SpecModel):
-    """A camera that is recorded all through the run, as a video of its own size."""
-
-    short = "camera"
-
-    camera: Name = Field(description="The name of the camera.")
-    rate: Annotated[Rate, Field(gt=0, le=120)] | None = Field(
-        default=None,
-        description="The frames in a second; the default is the camera's `update_rate`.",
-    )
-
-
 def looking_at(xyz: Xyz, target: Xyz) -> SE3:
     """A pose whose x axis points at a target, with z as far up as can be."""
     import numpy as np

@@ -19,7 +19,7 @@ from harness.language.base import (
     SpecModel,
     kind_of,
 )
-from harness.language.cameras import CameraSpec, VideoSpec
+from harness.language.cameras import CameraSpec
 from harness.language.expectation import AnyExpectation
 from harness.language.planning import Planning
 from harness.language.plugin_field import KeyModel, PluginModel, PluginName
@@ -248,7 +248,7 @@ class ScenarioContent(SpecModel):
     cameras: tuple[CameraSpec, ...] = Field(
         default=(), description="Cameras that are added to those of the world and the robot."
     )
-    videos: tuple[VideoSpec, ...] = Field(
+    videos: tuple[Annotated[KeyModel, PluginModel("video")], ...] = Field(
         default=(), description="Cameras that are recorded all through the run."
     )
     params: dict[Name, Any] = Field(

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
 
 from harness.cell.scope import Problems, Scope
 from harness.core.camera import Camera
-from harness.core.extras import install_command
-from harness.core.registry import absent_plugins, registry
-from harness.language.cameras import CameraSpec, VideoSpec
+from harness.language.cameras import CameraSpec
 
 
 def all_cameras(
@@ -63,33 +60,3 @@ def _check_simulated(spec: CameraSpec, loc: tuple[str | int, ...], scope: Scope)
             f"'{obj.name}' is known to the planner alone: no camera can be on it",
             "name an object that is `in: both` or `in: simulation`",
         )
-
-
-def check_videos(videos: Sequence[VideoSpec], scope: Scope) -> dict[str, float]:
-    """Frames a second of every camera that is recorded, by its name."""
-    rates: dict[str, float] = {}
-    if videos and "rendered" not in registry("camera_recorder"):
-        hint = "; ".join(absent_plugins())
-        scope.problems.add(("videos",), "no plug-in records cameras here", hint)
-    elif videos and find_spec("av") is None:
-        hint = f"install it by: {install_command('video')}"
-        scope.problems.add(
-            ("videos",), "the Python package av, which films, is not installed", hint
-        )
-    for index, spec in enumerate(videos):
-        loc = ("videos", index, "camera")
-        if spec.camera in rates:
-            scope.problems.add(loc, f"'{spec.camera}' is recorded already", "name it once")
-        scope.check_camera(spec.camera, loc)
-        camera = scope.cameras.get(spec.camera)
-        if camera is None:
-            continue
-        rates[spec.camera] = spec.rate or camera.update_rate
-        if rates[spec.camera] > camera.update_rate:
-            scope.problems.add(
-                ("videos", index, "rate"),
-                f"'{spec.camera}' takes {camera.update_rate:g} pictures a second, not"
-                f" {rates[spec.camera]:g}",
-                "lower `rate`, or raise the camera's `update_rate`",
-            )
-    return rates

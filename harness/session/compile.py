@@ -31,7 +31,7 @@ from harness.planning.search.find_pipeline import check_planner
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
-from harness.session.cameras import all_cameras, check_cameras, check_videos
+from harness.session.cameras import all_cameras, check_cameras
 from harness.session.options import check_planning, merged_options
 from harness.world.imported import ImportedWorld
 from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
@@ -107,8 +107,7 @@ class _Compiler:
             with self._gaps_allowed():
                 check_expectation(as_expectation(expectation), loc, self.scope, step)
         check_cameras(sources.world.world.cameras, scenario.cameras, self.scope)
-        videos = check_videos(scenario.videos, self.scope)
-        parts = resolved_parts(scenario, sources.description, self.problems)
+        parts = resolved_parts(scenario, self.scope)
         if len(objects) + len(self.later) > MOST_OBJECTS:
             self.problems.add(
                 ("objects",) if scenario.objects else ("world",),
@@ -127,7 +126,6 @@ class _Compiler:
             step_locs=self.step_locs,
             object_locs=self.object_locs,
             cameras=self.scope.cameras,
-            videos=videos,
             parts=parts,
         )
 

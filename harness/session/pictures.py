@@ -96,8 +96,8 @@ def _drawings(
         note = stills.note
         files = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
         files |= _failures(prepared, run, activity)
-    if prepared.program.videos:
-        videos, films = _recorder(prepared).videos(run, prepared.program.videos, activity)
+    if rates := prepared.program.parts.get("videos"):
+        videos, films = _recorder(prepared).videos(run, rates, activity)
         files |= films
     return Drawings(mesh_records(run), videos, files, note)
 

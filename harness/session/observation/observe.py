@@ -51,6 +51,6 @@ def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Fin
     overlaps = link_overlap_findings(signals)
     return (
         *(*looks_differ(run.objects), *overlaps),
-        *slowed_videos(run, prepared.program.videos),
+        *slowed_videos(run, prepared.program.parts.get("videos", {})),
         *differences,
     )

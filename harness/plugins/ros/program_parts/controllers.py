@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import ClassVar
 
 from harness.cell.program_part import ProgramPart
-from harness.cell.scope import Problems
+from harness.cell.scope import Problems, Scope
 from harness.language.scenario import ScenarioContent
 from harness.plugins.ros.keys.ros2 import ControllerKeys, Ros2Names
 from harness.robot.description import RobotDescription
@@ -48,13 +48,12 @@ class Controllers(ProgramPart):
 
     name: ClassVar[str] = "controllers"
 
-    def resolve(
-        self, scenario: ScenarioContent, robot: RobotDescription, problems: Problems
-    ) -> ControllerNames:
+    def resolve(self, scenario: ScenarioContent, scope: Scope) -> ControllerNames:
         """The scenario's names, else the robot's, else `<group>_controller` as MoveIt's assistant.
 
         Every controller needs a name of its own.
         """
+        robot, problems = scope.description, scope.problems
         names = scenario.ros2 if isinstance(scenario.ros2, Ros2Names) else Ros2Names()
         given = _given_names(robot, names, problems)
         by_arm = {
