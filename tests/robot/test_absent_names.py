@@ -58,6 +58,21 @@ def test_a_group_of_which_nothing_is_there_goes_with_all_that_names_it(tmp_path)
 
 
 @pytest.mark.parametrize(
+    "words",
+    [
+        'name="paw" parent_link="tool" group="left_hand"',
+        'name="paw" parent_link="tool" group="manipulators" parent_group="manipulator"',
+        'parent_link="nowhere" group="gripper"',
+    ],
+)
+def test_an_end_effector_of_no_group_is_left_out_as_in_moveit(tmp_path, words):
+    arm = load(tmp_path, f"<end_effector {words}/>")
+    assert arm.gripper is None
+    group = words.partition('group="')[2].partition('"')[0]
+    assert f"SRDF: end effector left out: there is no group '{group}'" in arm.notes
+
+
+@pytest.mark.parametrize(
     ("elements", "message"),
     [
         (

@@ -14,6 +14,7 @@ from harness.robot.urdf.values import bounded_number
 READ = frozenset(
     {"group", "group_state", "end_effector", "passive_joint", "virtual_joint", "disable_collisions"}
 )
+VIRTUAL = {"name": "virtual_joint", "type": "fixed", "parent_frame": "world", "child_link": ""}
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,9 @@ def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
         f"SRDF: {count} <{tag}> element{'s' if count > 1 else ''} ignored"
         for tag, count in sorted(ignored.items())
     ]
+    groups = {item.get("name") for item in root.findall("group")}
+    lost = sorted({item.need("group") for item in root.findall("end_effector")} - groups)
+    notes += [f"SRDF: end effector left out: there is no group '{group}'" for group in lost]
     return Srdf(
         tuple(_group(item) for item in root.findall("group")),
         tuple(
@@ -122,6 +126,7 @@ def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
                 item.get("parent_group"),
             )
             for item in root.findall("end_effector")
+            if item.get("group") in groups
         ),
         tuple(item.need("name") for item in root.walk() if item.tag == "passive_joint"),
         {
@@ -129,12 +134,7 @@ def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
             for item in root.findall("disable_collisions")
         },
         tuple(
-            VirtualJoint(
-                _optional(item, "name", "virtual_joint", notes),
-                _optional(item, "type", "fixed", notes),
-                _optional(item, "parent_frame", "world", notes),
-                _optional(item, "child_link", "", notes),
-            )
+            VirtualJoint(*(_optional(item, *each, notes) for each in VIRTUAL.items()))
             for item in root.findall("virtual_joint")
         ),
         tuple(notes),

@@ -82,10 +82,11 @@ def _check_end_effectors(
 ) -> None:
     groups = {group.name for group in srdf.groups}
     for item in root.findall("end_effector"):
-        if absent & {("group", item.get("group")), ("group", item.get("parent_group"))}:
+        names = {("group", item.get("group")), ("group", item.get("parent_group"))}
+        if absent & names or item.get("group") not in groups:
             continue
         what = f"end effector '{item.get('name')}'"
-        for key, known in (("parent_link", links), ("group", groups), ("parent_group", groups)):
+        for key, known in (("parent_link", links), ("parent_group", groups)):
             if item.get(key):
                 _check_name(item, key, what, key.rpartition("_")[2], known)
 
