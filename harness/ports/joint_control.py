@@ -98,8 +98,10 @@ class JointController(Plugin, ABC):
         period: Simulated time between two calls [s]; None: one call for each stretch of set points,
             of a controller that needs no measurement.
         is_compliant: Whether joints may stray from their set points, which else ends a motion.
+        link: The link that it moves, of a controller that moves the robot of this link alone.
     """
 
+    link: str = ""
     plugin_kind: ClassVar[str] = "controller"
     period: ClassVar[float | None] = None
     is_compliant: ClassVar[bool] = False

@@ -48,9 +48,7 @@ class JointDrive:
         self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
         names = [description.joint_names[place] for place in physics.actuated]
         hands = {gripper.joint for gripper in description.grippers}
-        is_hand = np.array([name in hands for name in names], dtype=bool)
-        self.arm, self._hand = np.flatnonzero(~is_hand), np.flatnonzero(is_hand)
-        self._joint_names = tuple(names[index] for index in self.arm)
+        self._actuated, self._arms = names, set(names) - hands
         kind = registry(JointController.plugin_kind).find(description.joint_controller)
         self._stiffness = physics.servos.stiffness.copy()
         self._damping = physics.servos.damping.copy()
@@ -61,8 +59,19 @@ class JointDrive:
     def use(self, controller: JointController | None) -> None:
         """Let a controller move the arm's joints from now on; None: the robot's own."""
         self.controller = controller or self._own
+        self._select()
         if self.cycle is not None:
             self._set_servos(ControlResult(np.zeros(len(self.arm))))
+
+    def _select(self) -> None:
+        """Find the joints of the controller; in a cell those of other robots keep their servos."""
+        robot, own = self._physics.description, set(self._arms)
+        name = robot.arm_of_link.get(self.controller.link, "") if robot.is_cell else ""
+        if name and self._own.period is None:
+            own &= {joint for arm in robot.arms if arm.name == name for joint in arm.robot_joints}
+        is_own = np.array([joint in own for joint in self._actuated], dtype=bool)
+        self.arm, self._hand = np.flatnonzero(is_own), np.flatnonzero(~is_own)
+        self._joint_names = tuple(joint for joint in self._actuated if joint in own)
 
     @property
     def cycle(self) -> int | None:
@@ -109,6 +118,7 @@ class JointDrive:
     def restore(self, controller: JointController) -> None:
         """Go on with a copy of a controller; the model's servos have been restored already."""
         self.controller = deepcopy(controller)
+        self._select()
         model, arm = self._physics.model, self.arm
         self._stiffness[arm] = -model.actuator_biasprm[arm, 1]
         self._damping[arm] = -model.actuator_biasprm[arm, 2]

@@ -22,11 +22,8 @@ from harness.simulation.independence import add_idle_joints
 LINK_FRICTION = Friction()  # Surface of robot links other than the finger pads
 
 TRIANGLE_MARGIN = 1e-9
-"""Share of the largest principal moment by which the sum of the two others exceeds it.
-
-MuJoCo rejects a body whose moments violate the triangle inequality by a rounding error, and adds
-rounding errors when it computes them. A flat or thin body lies on the edge of the inequality.
-"""
+"""Share of the largest principal moment by which the sum of the two others exceeds it. MuJoCo
+rejects flat and thin bodies that violate the triangle inequality by a rounding error."""
 
 MIMIC_SOLREF = (0.01, 1.0)
 """Time constant [s] and damping ratio of a mimic coupling.

@@ -17,18 +17,12 @@ from harness.simulation.compiling import compile_model
 from harness.simulation.robot_mjcf import add_robot, coupling
 
 BANDWIDTH_PER_STEP = 0.3
-"""Natural frequency of an arm servo times the physics step; 300 rad/s at 1 ms.
-
-Explicit stiffness is stable below 2; a folded arm has several times less inertia than the
-stretched arm for which the servo is designed.
-"""
+"""Natural frequency of an arm servo times the physics step; 300 rad/s at 1 ms. It is stable below
+2, and a folded arm has several times less inertia than the stretched one of the design."""
 
 ROTOR_INERTIA_PER_EFFORT = 1e-3
-"""Rotor inertia seen through the gear [kg m^2 per N m, kg per N].
-
-An estimate, as data sheets give neither rotor nor gear inertia: at full effort a joint cannot
-accelerate its own rotor faster than 1000 rad/s^2.
-"""
+"""Rotor inertia seen through the gear [kg m^2 per N m, kg per N]. An estimate, as data sheets have
+none: at full effort a joint cannot accelerate its own rotor faster than 1000 rad/s^2."""
 
 ROTOR_SHARE = 0.03
 """Rotor inertia of a joint without an effort limit, as a share of the largest inertia that a joint

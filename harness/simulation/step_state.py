@@ -13,10 +13,9 @@ import mujoco
 import numpy as np
 
 SLEEP_TIME = 1e-6
-"""The speed below which a body may fall asleep is that of a free fall of this duration [s].
-
-Under the gravity of Earth this is 0.01 mm/s. What begins to fall or to slide is a thousand times
-faster after the ten steps; cylinders that stand on a table tremble with micrometres per second.
+"""The speed below which a body may fall asleep is that of a free fall of this duration [s]: under
+the gravity of Earth 0.01 mm/s. What begins to fall or to slide is a thousand times faster after
+the ten steps; cylinders that stand on a table tremble with micrometres per second.
 """
 
 

@@ -109,8 +109,20 @@ NOISE = PICK.replace(
     "steps:\n",
     "steps:\n  - inject: {sensor_noise: 0.02 deg, command_latency: 4 ms}\n    robot: near\n",
 )
+COMPLY = PRESS.replace(
+    "        - wait: 0.2 s\n",
+    """\
+        - robot: near
+          comply:
+            stiffness: {x: 2 kN/m, y: 2 kN/m}
+            wrench: {z: -10 N}
+            during:
+              - wait: 0.3 s
+""",
+)
 SCENES = {
     "pick": PICK,
+    "comply": COMPLY,
     "noise": NOISE,
     "push": PUSH,
     "press": PRESS,

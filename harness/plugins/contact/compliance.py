@@ -70,7 +70,7 @@ class CartesianCompliance(JointController):
     is_compliant: ClassVar[bool] = True
 
     def __init__(self, compliance: Compliance) -> None:
-        self._compliance = compliance
+        self._compliance, self.link = compliance, compliance.link
         self._wrench = np.nan_to_num(compliance.wrench)
         self._bound = np.where(compliance.is_free, 0.0, 1.0)
         self._standing = None if compliance.rotation is None else _turn(compliance.rotation)
