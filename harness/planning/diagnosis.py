@@ -1,4 +1,4 @@
-"""Adds to a failed planning call why it failed, as plug-ins explain it."""
+"""Adds to a failed planning call why it failed, and to a failed step what to do, by plug-ins."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import ClassVar
 
+from harness.cell.cell import Cell
 from harness.core.details import Details
-from harness.core.errors import PlanningFailed
+from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.registry import Plugin, registry
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
@@ -19,7 +20,7 @@ _NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE"
 
 
 class Explainer(Plugin, ABC):
-    """Explains why planning failed; of several, the first by name does so."""
+    """Explains why something failed; of several, the first by name does so."""
 
     plugin_kind: ClassVar[str] = "explainer"
 
@@ -32,6 +33,11 @@ class Explainer(Plugin, ABC):
         kinematics: PinocchioKinematics,
     ) -> Explanation:
         """The result of each planning stage, in order, and what to do."""
+
+    def advice(self, failure: StepFailed, cell: Cell) -> str:
+        """What to do about a failed step that has no explanation; empty where nothing is known."""
+        del failure, cell
+        return ""
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from harness.cell.runner import End, Failure, OnStep, RunEndedError
 from harness.cell.scene_state import Belief, Presence, StepNotes
 from harness.core.details import Details
 from harness.core.errors import StepFailed
+from harness.core.registry import registry
 from harness.ports.external import ExternalSession
 from harness.ports.planning import PlanningPorts
 from harness.ports.simulation import Simulator
@@ -20,7 +21,6 @@ from harness.recording.explanation import Explanation
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
-from harness.session.advice import advice
 from harness.steps import _tracker
 
 
@@ -199,7 +199,8 @@ def _details(failure: StepFailed | None, cell: Cell) -> Details:
     """A failure's details, with what to do about it where that is known."""
     if failure is None:
         return Details()
-    text = advice(failure, cell)
+    explainers = registry("explainer").values()
+    text = next((said for each in explainers if (said := each().advice(failure, cell))), "")
     return failure.details + Details.of(Explanation(advice=text) if text else None)
 
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from harness.core.errors import StepFailed
+from harness.plugins.diagnosis.advice import advice
 from harness.recording.execution_failures import ContactForce, ControlFailure
-from harness.session.advice import advice
 from tests.session.front_door import run
 
 

@@ -87,7 +87,7 @@ def poses_in(goal: PoseGoal, seed: int) -> list[SE3]:
     for _ in range(SAMPLES):
         shift = rng.normal(size=3)
         shift *= 0.95 * goal.position_tolerance * rng.random() ** (1 / 3) / np.linalg.norm(shift)
-        turn = pin.exp3(rng.uniform(-0.95, 0.95, 3) * _limited(goal))
+        turn = pin.exp3(rng.uniform(-0.95, 0.95, 3) * np.minimum(_tolerances(goal), np.pi))
         poses.append(SE3(goal.pose.rotation @ turn, goal.pose.translation + shift))
     return poses
 
@@ -95,10 +95,6 @@ def poses_in(goal: PoseGoal, seed: int) -> list[SE3]:
 def _tolerances(goal: PoseGoal) -> tuple[float, float, float]:
     every = goal.orientation_tolerance
     return goal.axis_tolerances or (every, every, every)
-
-
-def _limited(goal: PoseGoal) -> FloatArray:
-    return np.minimum(np.array(_tolerances(goal)), np.pi)
 
 
 def _holding(

@@ -105,7 +105,8 @@ def verified_paths(
     for attempt in range(options.attempts):
         left, effort.attempts = options.max_state_checks, attempt + 1
         for number in range(SEARCHES):
-            seed = _derived_seed(options.seed, attempt, number)
+            sequence = np.random.SeedSequence([options.seed % 2**63, attempt, number])
+            seed = int(sequence.generate_state(1)[0])
             result = search(options, checker, start, goals, max_state_checks=left, seed=seed)
             effort.checks += result.checks
             left -= result.checks
@@ -115,7 +116,3 @@ def verified_paths(
             yield result, result.waypoints
             if left <= 0:
                 break
-
-
-def _derived_seed(seed: int, attempt: int, number: int) -> int:
-    return int(np.random.SeedSequence([seed % 2**63, attempt, number]).generate_state(1)[0])

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from harness.core.errors import PlanningFailed
+from harness.cell.cell import Cell
+from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.collision.scene import CoalScene
@@ -16,6 +17,7 @@ from harness.planning.diagnosis import Explainer
 from harness.planning.goals.goal_study import broken_limits, limit_sentence, study_goal
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.diagnosis.advice import advice
 from harness.plugins.diagnosis.branch_stage import branches_finding
 from harness.plugins.diagnosis.motion_stages import path_finding, start_finding, timing_finding
 from harness.plugins.diagnosis.reach_stage import reach_finding
@@ -89,6 +91,9 @@ class Stages(Explainer):
     """The result of each planning stage: reach, inverse kinematics, start, path and timing."""
 
     name: ClassVar[str] = "stages"
+
+    def advice(self, failure: StepFailed, cell: Cell) -> str:
+        return advice(failure, cell)
 
     def explain(
         self,
