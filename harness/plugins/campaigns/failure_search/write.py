@@ -127,10 +127,11 @@ def tried(found: SearchResult) -> list[str]:
     runs, start = len(found.exploration.samples), len(found.exploration.start)
     ranges = ", ".join(f"{each.path} ({each.range})" for each in found.space.parameters)
     shrunk = sum(each.shrink_runs for each in found.failures)
-    near = f", of these {runs - start} where margins are small" if runs > start else ""
+    where = "spread evenly over the ranges"
+    if runs > start:
+        where = f"{start} {where} and {runs - start} where margins are small"
     more = [f"{counted(shrunk, 'more run')} found the smallest changes."] if shrunk else []
-    where = f"listed below, spread evenly over the ranges{near}"
-    return [f"Varied: {ranges}.", f"{counted(runs, 'run')}, {where}.", *more]
+    return [f"Varied: {ranges}.", f"{counted(runs, 'run')}, listed below: {where}.", *more]
 
 
 def write_search(found: SearchResult, written: Written, folder: Path) -> Path:

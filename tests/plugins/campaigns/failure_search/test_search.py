@@ -92,7 +92,7 @@ def test_the_page_of_a_search_says_what_was_tried_and_each_command_runs(tmp_path
     shrunk = sum(each["shrink_runs"] for each in found["failures"])
     assert page.locator("#tried p:not(.quiet)").all_inner_texts() == [
         "Varied: x (-0.5 to 0.5), y (-0.489 to 0.489), z (0.4 to 1.1).",
-        "12 runs, listed below, spread evenly over the ranges.",
+        "12 runs, listed below: spread evenly over the ranges.",
         f"{shrunk} more runs found the smallest changes.",
     ]
     order = "[...document.querySelectorAll('main > section')].map((each) => each.id)"
@@ -161,6 +161,9 @@ def test_without_a_failure_the_bound_is_stated_and_the_workers_do_not_matter(tmp
     (tmp_path / "two").mkdir()
     code, found = search(tmp_path, SAFE, "--runs", "12", "--start", "8")
     assert code == 0
+    [page] = (tmp_path / "reports").rglob("index.html")
+    said = "12 runs, listed below: 8 spread evenly over the ranges and 4 where margins are small."
+    assert said in page.read_text()
     assert found["failures"] == []
     assert found["rate"]["high"] == pytest.approx(1 - 0.05 ** (1 / 8))
     said = capsys.readouterr().out
