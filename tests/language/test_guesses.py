@@ -186,3 +186,20 @@ def test_an_arm_that_no_unknown_key_names_is_reported_with_it(tmp_path, capsys):
     file.write_text(text)
     assert main(["check", str(file)]) == 2
     assert "the robot has one arm, and 'left' selects one" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("motion", ["move_to", "ptp"])
+def test_what_stands_one_column_too_far_in_counts_for_the_step(tmp_path, motion, capsys):
+    """A step of an arm, and one with an `id` that an expectation names, have one problem each."""
+    file = tmp_path / "arms.scenario.yaml"
+    arms = "{left: {model: ur3e, base: {xyz: [0, 1, 0]}}, right: ur3e}"
+    inside = f"{motion}: {{%s, joints: {{%s_elbow_joint: 1}}}}"
+    one, other = inside % ("robot: right", "right"), inside % ("id: bend, robot: left", "left")
+    expected = "expect: [{duration: {at_most: 9 s}, during: bend}]"
+    steps = f"steps:\n  - parallel:\n    - {one}\n    - {other}\n"
+    file.write_text(f"scenario: x\nrobots: {arms}\n{steps}{expected}\n")
+    assert main(["check", str(file)]) == 2
+    printed = capsys.readouterr().out
+    assert "`robot` stands next to" in printed
+    assert "`id` stands next to" in printed
+    assert printed.rstrip().endswith(": 3 problems")

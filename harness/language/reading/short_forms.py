@@ -132,13 +132,12 @@ class _Shaper:
         inside = [key for key in keys if key not in outside]
         entries: dict[str, Entry] = {}
         for key, entry in item.value.items():
-            if key in inside:
-                shaped = self.field(entry.value, keys[key])
-                entries[key] = Entry(entry.key, shaped)
-            elif key in keys and "verb" in names:
-                message = f"`{key}` stands next to `{names['verb']}`, not inside it"
-                hint = f"write it in the column of `{names['verb']}:`"
-                self.problems.append(entry.key.problem(message, hint))
+            if key in inside or (key in keys and "verb" in names):
+                entries[key] = Entry(entry.key, self.field(entry.value, keys[key]))
+                if key not in inside:
+                    message = f"`{key}` stands next to `{names['verb']}`, not inside it"
+                    hint = f"write it in the column of `{names['verb']}:`"
+                    self.problems.append(entry.key.problem(message, hint))
             else:
                 near = self._unknown_key(key, item, model, inside, names)
                 if near is not None and near not in item.value:  # continue with the valid key
