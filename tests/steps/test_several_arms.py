@@ -148,6 +148,27 @@ def test_a_mistake_under_an_arm_is_there(tmp_path):
     assert message.startswith("robots.right.model: 'urx' is not known")
 
 
+ALLOWED = f"""
+scenario: an arm may touch a pillar
+{PAIR}
+objects:
+  - {{name: pillar, in: planning, box: {{size: [0.1, 0.1, 0.7]}}, pose: {{xyz: [0.4, 0, 0.35]}}}}
+steps:
+  - allow_collisions:
+      pairs: [[ARM, pillar]]
+      during:
+        - ptp: {{joints: {{right_shoulder_pan_joint: 0, right_shoulder_lift_joint: -0.5,
+            right_elbow_joint: 0.8, right_wrist_1_joint: -0.3}}}}
+          robot: right
+"""
+
+
+@pytest.mark.parametrize(("arm", "outcome"), [("right", "passed"), ("left", "failed")])
+def test_the_name_of_an_arm_allows_its_links_and_its_hand(arm, outcome, recorded_run):
+    run = read_run(recorded_run(ALLOWED.replace("ARM", arm), outcome) / "run").run
+    assert run.steps[-1].error_code == ("" if arm == "right" else "GOAL_IN_COLLISION")
+
+
 def test_one_arm_or_several(tmp_path):
     [(_, message, _)] = found(tmp_path, "  - wait: 1\n", robot=f"robot: ur3e\n{PAIR}")
     assert message == "`robot` is one arm, and `robots` are several: give one of the two"

@@ -27,7 +27,8 @@ class AllowCollisions(Step):
     results = (AllowedCollisions,)
 
     pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)] = Field(
-        description="Pairs of names of links or objects that may touch; `gripper`: all its links."
+        description="Pairs of names of links or objects that may touch; `gripper`: all its links;"
+        " the name of one of several arms: its links and its gripper."
     )
     during: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
         description="The steps during which the pairs may touch."
@@ -67,5 +68,7 @@ class AllowCollisions(Step):
 
 
 def _bodies(name: str, cell: Cell) -> tuple[str, ...]:
-    """The bodies that a name stands for in the planning scene."""
+    """The bodies that a name stands for in the planning scene; of an arm, its hand included."""
+    if name in cell.robot.of_arm:
+        return tuple(link for link, arm in cell.robot.arm_of_link.items() if arm == name)
     return (cell.gripper.palm_link, *cell.gripper.links) if name == "gripper" else (name,)
