@@ -38,7 +38,7 @@ RUN_MODULES = (
 """What every run imports until its outcome is known."""
 
 REPORT_MODULES = (
-    "harness.session.observation.looks_differ",
+    "harness.cameras.meshes",
     *registry("camera_recorder").built_in_modules.values(),
     "harness.reporting.html.write",
     "jinja2",

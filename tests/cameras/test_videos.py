@@ -10,11 +10,11 @@ import pytest
 
 from harness.core.camera import MOST_FRAMES
 from harness.plugins.cameras.camera_scene import CameraScene
+from harness.plugins.cameras.observers.videos import slowed_videos
 from harness.plugins.cameras.renderer import make_renderer
 from harness.plugins.cameras.sensor import as_delivered
 from harness.plugins.cameras.videos import record_videos
 from harness.recording.film import decoded_film
-from harness.session.observation.findings import slowed_videos
 from tests.cameras.camera_runs import ball, eye, robot, run_with
 from tests.cameras.test_captures import centre_of, predicted
 from tests.waiting import HANG

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from harness.cell.program import Program
 from harness.cell.program_part import ProgramPart
 from harness.core.errors import Problem
 from harness.core.registry import registry
 from harness.ports.scene import Touch
-from harness.recording.run import Finding, Run
+from harness.recording.run import Finding
 
 NOTHING_EXPECTED = (
     "the scenario expects nothing, so it passes whatever happens, as long as no step fails;"
@@ -36,20 +36,6 @@ def noted(problem: Problem) -> str:
 def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
     """What was left out of the robot's and the world's files, or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
-
-
-def slowed_videos(run: Run, rates: Mapping[str, float]) -> tuple[Finding, ...]:
-    """The cameras whose video has a lower rate than requested, since the run is long."""
-    most = {camera.name: camera.most_frames for camera in run.cameras}
-    return tuple(
-        Finding(
-            "video_rate",
-            f"{name} is recorded at {most[name] / run.duration:.3g} Hz instead of {rate:g} Hz:"
-            f" a video of this size has at most {most[name]} frames",
-        )
-        for name, rate in rates.items()
-        if run.duration * rate > most[name]
-    )
 
 
 def overlap_text(touch: Touch) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 
+from harness.core.registry import registry
 from harness.judging.facts import remembered_facts
 from harness.recording.run import Finding, Run
 from harness.recording.signals import Signals
-from harness.session.observation.findings import slowed_videos
+from harness.session.observation.observer import Observer
 from harness.session.observation.tracking import as_commanded, plan_against_physics
 from harness.session.prepare import Prepared
 
@@ -36,7 +38,6 @@ def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Fin
     """The findings that only a report shows."""
     from harness.session.observation.clearance import CoalClearance
     from harness.session.observation.link_overlaps import link_overlap_findings
-    from harness.session.observation.looks_differ import looks_differ
 
     description, cutoff = prepared.program.description, signals.clearance_cutoff
     observer = CoalClearance(description)
@@ -49,8 +50,6 @@ def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Fin
         ),
     )
     overlaps = link_overlap_findings(signals)
-    return (
-        *(*looks_differ(run.objects), *overlaps),
-        *slowed_videos(run, prepared.program.parts.get("videos", {})),
-        *differences,
-    )
+    observers = registry(Observer.plugin_kind).values()
+    found = chain.from_iterable(each().report(run, prepared.program) for each in observers)
+    return (*found, *overlaps, *differences)

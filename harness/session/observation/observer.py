@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import ClassVar
 
+from harness.cell.program import Program
 from harness.core.registry import Plugin, registry
-from harness.recording.run import Finding, ObjectRecord
+from harness.recording.run import Finding, ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
@@ -15,12 +15,11 @@ from harness.robot.description import RobotDescription
 Observed = tuple[tuple[StepRecord, ...], tuple[Finding, ...]]
 
 
-class Observer(Plugin, ABC):
+class Observer(Plugin):
     """Adds to the results of steps what the record shows of them."""
 
     plugin_kind: ClassVar[str] = "observer"
 
-    @abstractmethod
     def observe(
         self,
         steps: Sequence[StepRecord],
@@ -29,6 +28,13 @@ class Observer(Plugin, ABC):
         objects: Sequence[ObjectRecord],
     ) -> Observed:
         """The steps with what was observed, and findings of the whole run."""
+        del signals, robot, objects
+        return tuple(steps), ()
+
+    def report(self, run: Run, program: Program) -> tuple[Finding, ...]:
+        """Findings that a report alone shows, since they take time."""
+        del run, program
+        return ()
 
 
 def observed(

@@ -12,12 +12,12 @@ from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sp
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.judging.expectations.duration import DurationCheck
+from harness.plugins.remarks.observers.looks import looks_differ
 from harness.plugins.remarks.observers.steps import findings_of
 from harness.ports.scene import Touch
 from harness.session.observation.beliefs import believed_poses
 from harness.session.observation.findings import about_file, overlap_findings
 from harness.session.observation.link_overlaps import link_overlap_findings
-from harness.session.observation.looks_differ import looks_differ
 from tests.judging.synthetic_run import BOX, heights, make_run, step
 
 

@@ -4,17 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from typing import ClassVar
 
 import numpy as np
 
-from harness.cameras.meshes import mesh_parts
+from harness.cell.program import Program
 from harness.core.geometry import Mesh, Plane, Shape, reach
 from harness.core.types import FloatArray
-from harness.recording.run import Finding, ObjectRecord
+from harness.recording.run import Finding, ObjectRecord, Run
+from harness.session.observation.observer import Observer
 
 LEAST_DIFFERENCE = 0.005  # of a side's place [m]: a picture that is off by less shows the shape
 LEAST_SHARE = 0.1  # of the object's extent along that axis
 CORNERS = np.array(list(product((0, 1), repeat=3)))
+
+
+class Looks(Observer):
+    """Objects that look larger or smaller than what the physics knows of them."""
+
+    name: ClassVar[str] = "looks"
+
+    def report(self, run: Run, program: Program) -> tuple[Finding, ...]:
+        del program
+        return looks_differ(run.objects)
 
 
 def looks_differ(objects: Sequence[ObjectRecord]) -> tuple[Finding, ...]:
@@ -53,6 +65,8 @@ def outline(shapes: Sequence[Shape]) -> FloatArray:
 def _points(shape: Shape) -> FloatArray:
     """Vertices of a mesh, corners of what holds another shape, in its own frame, (N, 3)."""
     if isinstance(shape.geometry, Mesh):
+        from harness.cameras.meshes import mesh_parts  # loads readers of meshes
+
         parts = mesh_parts(shape.geometry)
         return np.concatenate([part.vertices for part in parts]) if parts else np.zeros((1, 3))
     half = reach(shape.geometry, np.eye(3))
