@@ -89,6 +89,7 @@ def test_a_graded_recording_has_the_page_of_a_run(recording, tmp_path, capsys):
     assert (kept.outcome, kept.run.file, kept.changes()) == ("passed", str(bag), [])
     assert [each.credit for each in kept.verdicts if each.credit][-1] == "1 of 1 points"
     assert "points <b>14 of 14</b>" in page.read_text(), "in the summary"
+    assert kept.run.source == SCENARIO.read_text(), "whose lines the verdicts name"
     assert main(["judge", str(page.parent)]) in (0, 1)
     assert main([*words, "--report-dir", str(tmp_path / "none"), "--no-report"]) == 0
     assert not (tmp_path / "none").exists()
