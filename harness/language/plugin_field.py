@@ -59,6 +59,9 @@ class KeyModel(SpecModel):
         """The key that this class is registered under."""
         return cls.__dict__.get("key", "")
 
+    def expectation(self) -> tuple[str, str] | None:
+        """The field that names an expectation of the same file, and that name; None without."""
+
 
 class PluginModel:
     """Annotates a field with the model of a plug-in: `Annotated[KeyModel, PluginModel("mount")]`.

@@ -138,12 +138,12 @@ def read_scenario(
 
 
 def _unknown_expectation(scenario: Scenario, lines: SourceMap) -> Iterator[Problem]:
-    """The mistake that `search` minimises an expectation that does not exist."""
+    """The mistake that `search` names an expectation that does not exist."""
     names = scenario.expectation_names()
-    if scenario.search and scenario.search.minimise not in (None, *names):
-        name = scenario.search.minimise
+    field, name = (scenario.search and scenario.search.expectation()) or ("", "")
+    if field and name not in names:
         yield lines.problem(
-            ("search", "minimise"),
+            ("search", field),
             f"no expectation has the name '{name}'",
             did_you_mean(name, names, "names"),
         )

@@ -40,3 +40,6 @@ class SearchSpec(KeyModel):
         description="The `name` of the expectation whose margin the optimiser minimises; the "
         "default is the worst margin of all.",
     )
+
+    def expectation(self) -> tuple[str, str] | None:
+        return None if self.minimise is None else ("minimise", self.minimise)
