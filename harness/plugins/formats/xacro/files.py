@@ -9,6 +9,7 @@ from glob import glob
 from pathlib import Path
 from typing import Any
 
+from harness.core.files import is_file
 from harness.core.inputs import is_there
 from harness.core.limits import XACRO_FILES
 from harness.language.files.source import Located, Source
@@ -55,7 +56,7 @@ class Files:
         path = Path(self.absolute(name))
         if not self._packages.may_read(path):
             raise ExpressionError(self._packages.outside(name, path.resolve()))
-        if not is_there(path):
+        if not (is_there(path) and is_file(path)):
             raise MissingFile(f"there is no file '{name}'")
         return path
 
