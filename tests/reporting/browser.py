@@ -73,10 +73,14 @@ def new_context(browser, **options):
     return context
 
 
-def wait_for(page, expression):
-    """Wait until an expression is true in a page, whose policy keeps it from evaluating any."""
+def wait_for(page, expression, complaints=()):
+    """Wait until an expression is true in a page, whose policy keeps it from evaluating any.
+
+    A page that complains meanwhile is not waited for.
+    """
     end = time.monotonic() + HANG
     while not page.evaluate(expression):
+        assert list(complaints) == []
         assert time.monotonic() < end, f"not within {HANG:g} s: {expression}"
         page.wait_for_timeout(20)
 
@@ -142,7 +146,8 @@ def visits(browser):
             visit.page.add_init_script(NO_WEBGL)
         visit.page.goto(f"{Path(file).as_uri()}{place}")
         if scripts:
-            wait_for(visit.page, "document.documentElement.dataset.ready === 'yes'")
+            ready = "document.documentElement.dataset.ready === 'yes'"
+            wait_for(visit.page, ready, visit.complaints)
         return visit
 
     yield open_page

@@ -37,9 +37,8 @@ export class Address {
   constructor(clock) {
     this.clock = clock;
     this.suite = suiteOf(location.hash);
-    const back = /** @type {HTMLAnchorElement} */ (document.getElementById("suite"));
-    back.hidden = !this.suite;
-    back.href = this.suite;
+    const back = document.getElementById("suite"); // a page of two runs has none
+    if (this.suite && back instanceof HTMLAnchorElement) [back.hidden, back.href] = [false, this.suite];
     /** @type {Record<string, string | number>} */
     this.place = {};
     let due = 0;
