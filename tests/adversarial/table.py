@@ -142,7 +142,7 @@ predicate reads; it shifts, freezes and drops each of them, fills it with NaN or
 it with a second source, exchanges it with another from the start or from some moment on, and glues
 objects to the hand. No corrupted recording may pass.
 `tests/judging/test_metamorphic.py` shifts, turns and renames the world; no verdict may change
-(612 cases, and six in the physics with more friction, mass or grip). `pytest -m nightly` runs all.
+(852 cases, and six in the physics with more friction, mass or grip). `pytest -m nightly` runs all.
 
 A second opinion comes from a slow and simple judge (`tests/second_opinion`) that shares no code
 with the verdicts: geometry and a balance of forces from MuJoCo's raw states, on random pick, push,
