@@ -186,11 +186,9 @@ def _print_rates(suite: SuiteRun, columns: Columns | None, style: Style) -> None
         say(line)
 
 
-def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
-    """The command that runs one case again as it was run."""
-    words = ["harness", "run", str(job.file)]
-    if job.case:
-        words += ["--case", job.case]
+def options_again(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """The options on which the result of a case depends, as words of the command."""
+    words: list[str] = []
     for path, value in arguments.overrides:
         words += ["--set", f"{path}={value}"]
     for folder in arguments.package_folders:
@@ -203,8 +201,13 @@ def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
         words += ["--samples", str(arguments.samples)]
     for node in arguments.nodes:
         words += ["--node", node]
-    words += ["--strict"] if arguments.strict else []
-    words += ["--bag"] if arguments.bag else []
+    return (*words, *["--strict"] * arguments.strict)
+
+
+def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
+    """The command that runs one case again as it was run, and writes what was written."""
+    words = ["harness", "run", str(job.file), *(["--case", job.case] if job.case else [])]
+    words += [*job.options, *["--bag"] * arguments.bag]
     for name in arguments.reporters:
         words += ["--reporter", name]
     if arguments.report_dir != "reports":

@@ -145,6 +145,7 @@ class Run:
             observable.
         captures: Pictures taken, in order of time.
         commands: What external programs commanded, in the order of arrival.
+        options: Words that `harness run FILE` was given besides, as `--set`, `lift=0.1`.
         files: Content of `captures` by path in the run's folder; a saved run reads each on first
             use.
     """
@@ -170,6 +171,7 @@ class Run:
     cameras: tuple[Camera, ...] = ()
     captures: tuple[CaptureRecord, ...] = ()
     commands: tuple[CommandRecord, ...] = ()
+    options: tuple[str, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)
 
     @property

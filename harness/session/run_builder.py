@@ -109,4 +109,5 @@ def _recorded(
         unrecorded=simulator.unrecorded,
         cameras=tuple(program.cameras.values()),
         commands=tuple(commands),
+        options=request.options,
     )

@@ -67,6 +67,7 @@ class RunRequest(RunOptions):
             None draws it once.
         live: The Unix socket to which the case sends its poses while it runs; empty sends none.
         longest: The most simulated time of the run [s]; a step that would exceed it fails.
+        options: Words of a command that runs it again, besides file and case, as `--seed`, `7`.
     """
 
     file: Path
@@ -83,6 +84,7 @@ class RunRequest(RunOptions):
     redraw: Callable[[int], Draw] | None = None
     live: str = ""
     longest: float = LONGEST_RUN
+    options: tuple[str, ...] = ()
 
     @property
     def shown_file(self) -> str:

@@ -227,5 +227,6 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         only_failed=keep == "failed",
         redraw=fixed.redraw,
         live=request.hooks.live,
+        options=request.options,
         **values_of(RunOptions, request),
     )

@@ -48,6 +48,7 @@ class SuiteRequest(SuiteSelection):
 
     Attributes:
         report_root: Folder for the reports; None writes no reports.
+        options: Words that `harness run` was given, on which the result of each case depends.
         hard_cap: Wall time that a case may take [s]; None takes the program's own.
     """
 
@@ -75,6 +76,7 @@ class SuiteRequest(SuiteSelection):
         "--in-process", default=False, text="run all cases in this process, for a debugger"
     )
     report_root: Path | None = None
+    options: tuple[str, ...] = ()
     page: bool = True
     hard_cap: float | None = None
     hooks: SuiteHooks = NO_HOOKS

@@ -212,10 +212,12 @@ class SuiteRun:
         planned = self.plan[index // self._request.repeat]
         header, stored = planned.header, self.results.stored(index)
         if stored is not None:
-            return SuiteCase(stored.result, stored.values, header.tags, header.verifies)
-        result = self.results[index]
-        values = {**planned.values, **result.values}
-        return SuiteCase(result, values, header.tags, header.verifies)
+            result, values = stored.result, stored.values
+        else:
+            result = self.results[index]
+            values = {**planned.values, **result.values}
+        options = self._request.options
+        return SuiteCase(result, values, header.tags, header.verifies, options=options)
 
     def failures(self) -> Iterator[CaseResult]:
         return (self.results[i] for i, outcome in self.results.outcomes() if outcome != "passed")

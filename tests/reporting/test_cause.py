@@ -1,5 +1,6 @@
 """What the page of a failed run says first: its cause, the fault before it, and the command."""
 
+import shlex
 from dataclasses import replace
 
 import pytest
@@ -57,14 +58,17 @@ def opened(visit, tmp_path):
 
 
 def test_cause_fault_finding_and_command_are_at_the_top(opened):
-    visit = opened(never_lifted(), moved_off())
+    options = ("--set", "lift=5 cm", "--seed", "7")
+    visit = opened(never_lifted(), moved_off(), options=options, source="lift: 10 cm")
     page = visit.page
     words = dict(zip(page.locator("#cause dt").all_inner_texts(),
                      page.locator("#cause dd").all_inner_texts(), strict=True))  # fmt: skip
     assert words["Cause"].startswith("box is lifted: it rose 0 mm · line 9 · 1 more")
     assert words["Fault"] == "inject friction of box 0.02 · injected at t = 0.59 s · line 4"
     assert words["Found"] == "friction had no effect"
-    assert page.inner_text("#cause code") == r"harness run 'my runs/it'\''s.yaml' --case a"
+    command = shlex.split(page.inner_text("#cause code"))
+    assert command == ["harness", "run", "my runs/it's.yaml", "--case", "a", *options]
+    assert "--set 'lift=5 cm' --seed 7" in page.text_content("#panel-source")
     page.click("#cause .copy")
     page.wait_for_selector(".copy:text-is('copied')")
     page.click("#cause .link:has-text('friction of box')")

@@ -94,6 +94,17 @@ def test_failures_come_first_with_their_cause_in_a_line_and_details_on_a_click(s
     assert "harness run a/pick.scenario.yaml --case c1" in row.locator(".facts").inner_text()
 
 
+def test_the_command_of_a_case_has_the_options_of_the_suite(tmp_path, visit):
+    suite = small_suite()
+    options = ("--set", "params.lift=5 cm")
+    cases = [replace(case, options=options) for case in suite.cases]
+    page = visit(write_suite(tmp_path, replace(suite, cases=cases), 3)[0]).page
+    row = page.locator("tr.case", has_text="[c1]")
+    row.locator("summary").click()
+    command = "harness run a/pick.scenario.yaml --case c1 --set 'params.lift=5 cm'"
+    assert command in row.locator(".facts").inner_text()
+
+
 def test_a_failure_shows_the_picture_of_the_moment_that_decided_it(tmp_path, visit):
     folder = tmp_path / "a/pick/c1"
     (folder / "images").mkdir(parents=True)

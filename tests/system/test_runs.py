@@ -132,6 +132,8 @@ def test_outcomes_give_the_exit_code_and_the_failure_comes_last_with_how_to_repe
     assert lines[2] == "     10 |   - duration: {at_least: 5000 s}"
     assert "  report: reports/late/report.html#t=1.39&expect=2" in lines
     assert "  again:  harness run late.scenario.yaml --set scenario=Late --seed 5" in lines
+    stored = json.loads(Path("reports/late/run.json").read_text())
+    assert stored["options"] == ["--set", "scenario=Late", "--seed", "5"]
     assert lines[-3].startswith("1 failed, 1 passed of 2 cases in ")
     assert lines[-2] == "2 files found, 2 collected, 2 run"
 

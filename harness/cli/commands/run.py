@@ -26,6 +26,7 @@ from harness.cli.shared_options import (
     add_verbose,
 )
 from harness.cli.suite_output import (
+    options_again,
     show_interruption,
     show_json,
     show_lines,
@@ -149,6 +150,7 @@ def _suite(call: RunCall) -> SuiteRun:
         overrides=dict(arguments.overrides),
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
         report_root=root,
+        options=options_again(arguments),
         page=not arguments.no_page,
         hooks=hooks,
     )

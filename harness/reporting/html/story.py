@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from harness.core.resources import with_short_names
 from harness.recording.plain import to_plain
 from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.run import Run
@@ -198,6 +200,14 @@ def _joint(run: Run, joint: Joint, column: int) -> dict[str, Any]:
     }
 
 
+def command_again(run: Run) -> str:
+    """The command that runs this case as it was run; empty for a recording, which none repeats."""
+    if "mujoco" not in run.versions or not run.file:
+        return ""
+    case = ["--case", run.case] if run.case else []
+    return shlex.join(["harness", "run", with_short_names(run.file), *case, *run.options])
+
+
 def environment(stored: StoredRun) -> list[tuple[str, str]]:
     """Everything one needs to run it again and get the same."""
     run = stored.run
@@ -206,6 +216,7 @@ def environment(stored: StoredRun) -> list[tuple[str, str]]:
         ("scenario", run.scenario),
         ("file", run.file),
         ("case", run.case),
+        ("options", shlex.join(run.options)),
         ("seed", str(run.seed) if "mujoco" in run.versions else ""),
         ("digest", stored.digest),
         ("robot", run.robot.name),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from harness.reporting.html.presses import pack_presses
 from harness.reporting.html.scene import pack_scene
 from harness.reporting.html.still import small_still
 from harness.reporting.html.story import (
+    command_again,
     contact_facts,
     environment,
     findings_facts,
@@ -106,6 +108,8 @@ class Page:
                 "contacts": contact_facts(run),
                 "joints": joint_facts(run),
                 "environment": environment(stored),
+                "again": command_again(run),
+                "options": shlex.join(run.options),
                 "source": run.source,
                 **self._facts,
                 "cameras": pack_cameras(stored, packer),

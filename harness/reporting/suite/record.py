@@ -35,6 +35,7 @@ class SuiteCase:
     Attributes:
         values: What varies, path -> value.
         again: The words of the command that shows it again; None: those of its file and case.
+        options: Further words of that command, as `--set`, `lift=0.1`.
     """
 
     result: CaseResult
@@ -42,6 +43,7 @@ class SuiteCase:
     tags: tuple[str, ...] = ()
     verifies: tuple[str, ...] = ()
     again: tuple[str, ...] | None = None
+    options: tuple[str, ...] = ()
 
     @cached_property
     def nearest(self) -> Verdict | None:

@@ -49,6 +49,7 @@ def row_facts(
         "details": causes(result) if cause else [],
         "case": result.case,
         "again": case.again,
+        "options": case.options,
         "expects": len(result.verdicts),
         "expected": sum(step.status == "expected error" for step in result.steps),
         "report": result.report_dir,

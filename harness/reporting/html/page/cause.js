@@ -3,7 +3,6 @@
 import { breakable, byId, element } from "./dom.js";
 import { seconds } from "./units.js";
 
-const PLAIN = /^[\w./:@%+=-]+$/; // what a shell takes as it is
 const RESTED = 0.01; // of its limit: what stayed below has not begun
 
 /** The step that failed by itself, and the first expectation that does not hold. @param {any} run */
@@ -75,11 +74,8 @@ function row(title, ...children) {
 }
 
 /** The command that runs this case; nothing for a recording, which no command repeats. */
-function commandRow({ environment }) {
-  const known = Object.fromEntries(environment);
-  if (!known.mujoco || !known.file) return [];
-  const quoted = (text) => (PLAIN.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-  const command = `harness run ${quoted(known.file)}${known.case ? ` --case ${quoted(known.case)}` : ""}`;
+function commandRow({ again: command }) {
+  if (!command) return [];
   const code = element("code", {}, command);
   const copy = element("button.copy", { type: "button", title: "Copy the command" }, "copy");
   copy.addEventListener("click", async () => {

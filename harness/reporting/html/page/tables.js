@@ -27,7 +27,8 @@ export function sourceView({ run }, select) {
     if (known.has(line)) made.addEventListener("click", () => select(line));
     return made;
   });
-  return element("pre.source", { tabindex: 0, "aria-label": "Scenario file" }, ...lines);
+  const set = run.options ? element("p.setting", {}, "Run with ", element("code", {}, run.options), ": where these say otherwise, the file's values did not apply.") : null;
+  return element("div", {}, set, element("pre.source", { tabindex: 0, "aria-label": "Scenario file" }, ...lines));
 }
 
 /** Mark the lines of the step that runs. @param {HTMLElement} view @param {number} from @param {number} to not included */

@@ -3,8 +3,8 @@
 import { element } from "./dom.js";
 
 /** @param {any} row @returns {(HTMLElement | string)[]} what runs it again; of a run of a search what shows the same failure, if it failed */
-export function runCommand({ file, case: name, again, link }) {
-  const words = ["harness", ...(again ?? ["run", file, ...(name ? ["--case", name] : [])])];
+export function runCommand({ file, case: name, again, options, link }) {
+  const words = ["harness", ...(again ?? ["run", file, ...(name ? ["--case", name] : []), ...options])];
   if (again) return again.length ? ["the smallest change that fails in this way: ", command(words)] : [];
   return [link ? "" : "no report was kept; this writes one: ", command(words)];
 }
