@@ -179,6 +179,27 @@ def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
     return replace(below, spheres=spheres, nodes=np.vstack([top, nodes]))
 
 
+def surface_tree(vertices: FloatArray, faces: IntArray) -> ConvexTree:
+    """The tree of a surface: hulls of ever fewer triangles, halved down to single ones."""
+    middles = vertices[faces].mean(axis=1)
+    nodes: list[ConvexTree] = []
+    ends: list[int] = []
+
+    def add(members: IntArray) -> None:
+        place = len(nodes)
+        nodes.append(hull_of_points(vertices[np.unique(faces[members])]))
+        ends.append(0)
+        if len(members) > 1:
+            for half in _halves(middles, members):
+                add(half)
+        ends[place] = len(nodes)
+
+    add(np.arange(len(faces)))
+    tree = concatenate(nodes)
+    tree.nodes[:, 0] = ends
+    return tree
+
+
 def _ball_around(first: FloatArray, second: FloatArray) -> FloatArray:
     """Centre and radius of a ball that contains two others, shape (4,)."""
     balls = np.array([first, second])

@@ -27,8 +27,8 @@ from harness.planning.collision.convex_tree import (
     coal_hull,
     leaf,
     single_node,
+    surface_tree,
 )
-from harness.planning.collision.surface_tree import surface_tree
 from harness.robot.mesh_file import convex_hull, decomposition_of, read_triangles
 
 _CUBE = np.array(np.meshgrid(*([-0.5, 0.5],) * 3)).reshape(3, -1).T
