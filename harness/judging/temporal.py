@@ -132,9 +132,7 @@ def _best(values: FloatArray, progress: FloatArray | None) -> int:
     return int(largest[np.argmax(np.nan_to_num(progress[largest], nan=-np.inf))])
 
 
-def _spans(
-    times: FloatArray, hold: float | None, within: float | None
-) -> tuple[IntArray, IntArray]:
+def spans(times: FloatArray, hold: float | None, within: float | None) -> tuple[IntArray, IntArray]:
     """First and last sample of each span of `hold` seconds that begins within the time for it.
 
     Raises:
@@ -172,7 +170,7 @@ def eventually(
     Raises:
         TooShort: No sample that may begin it is followed by `hold` seconds.
     """
-    starts, ends = _spans(times, hold, within)
+    starts, ends = spans(times, hold, within)
     if hold is None:
         index = _best(values[starts], None if progress is None else progress[starts])
         return Decision(float(values[index]), index, bool(values[index] >= 0))
@@ -229,46 +227,6 @@ def at_end(
         return decision
     came_true = eventually(values, times, hold, within, progress)
     return came_true if came_true.value < decision.value else decision
-
-
-def until(
-    first: FloatArray,
-    second: FloatArray,
-    times: FloatArray,
-    hold: float | None = None,
-    within: float | None = None,
-) -> tuple[Decision, bool]:
-    """The best moment at which the second begins, the first having held at all samples before it.
-
-    At that moment itself the first need not hold.
-
-    Args:
-        first: Margins of what must hold before, shape (n,), n > 0, without NaN.
-        second: Margins of what must come, shape (n,), without NaN.
-        hold: The second must be held so long without a break [s].
-        within: Latest beginning of the second after the first sample [s].
-
-    Returns:
-        The decision, and whether it was a sample of the second that decided.
-
-    Raises:
-        TooShort: No sample at which the second may begin is followed by `hold` seconds.
-    """
-    starts, ends = _spans(times, hold, within)
-    coming = range_min(second, starts, ends)
-    before = np.concatenate([[np.inf], np.minimum.accumulate(first)])[starts]
-    values = np.minimum(coming, before)
-    came = coming >= 0
-    if came.any() and not (values >= 0).any():  # it came: what did not hold before says why
-        values = np.where(came, values, -np.inf)
-    best = int(np.argmax(values))
-    value, is_second = float(values[best]), bool(coming[best] <= before[best])
-    start, end = int(starts[best]), int(ends[best])
-    if is_second:
-        index = start + int(np.argmin(second[start : end + 1]))
-    else:
-        index = int(np.argmin(first[:start]))
-    return Decision(value, index, bool(value >= 0)), is_second
 
 
 def _first_of_last(times: FloatArray, span: float) -> int:

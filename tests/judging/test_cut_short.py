@@ -9,10 +9,10 @@ from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.plugins.arms.expectations.named_target import NamedTarget
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.objects.expectations.displaced import Displaced
 from harness.plugins.objects.expectations.in_contact import InContact
 from harness.plugins.objects.expectations.static import Static

@@ -16,7 +16,6 @@ from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.judging.hold import HOLD_TIME, why_not_between
@@ -24,6 +23,7 @@ from harness.judging.temporal import eventually
 from harness.judging.window import window_of
 from harness.plugins.arms.expectations.clearance import Clearance, unknown_distances
 from harness.plugins.arms.expectations.named_target import NamedTarget
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.objects.expectations.displaced import Displaced
 from harness.plugins.objects.expectations.in_ import In
 from harness.plugins.objects.expectations.in_contact import InContact

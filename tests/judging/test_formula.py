@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from harness.judging.temporal import TooShort, always, eventually, never, until
+from harness.judging.temporal import TooShort, always, eventually, never
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.formulas.expectations.until import until_decision
 from harness.plugins.formulas.language.formula import (
     Comparison,
     Const,
@@ -298,7 +299,7 @@ def test_temporal_words_agree_with_their_formulas(signal, hold, within):
     pairs = [
         (f"eventually{by} ({came})", _word(eventually, y, times, hold, within)),
         (f"not eventually{by} ({came})", _word(never, y, times, hold, within)),
-        (f"x(tcp) >= 0 until{by} ({came})", _word(until, x, y, times, hold, within)),
+        (f"x(tcp) >= 0 until{by} ({came})", _word(until_decision, x, y, times, hold, within)),
     ]
     if hold is None and within is not None:
         pairs.append((f"eventually{by} always y(tcp) >= 0", _word(always, y, times, None, within)))

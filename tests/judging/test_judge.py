@@ -16,7 +16,6 @@ from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
 from harness.judging.expectations.tcp_pose import TcpPose
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.judging.judge import judge
 from harness.judging.observations import (
@@ -31,6 +30,7 @@ from harness.language.poses import Pose
 from harness.plugins.arms.expectations.clearance import Clearance
 from harness.plugins.cameras.expectations.sees import HueRange, Sees
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.objects.expectations.in_ import In
 from harness.plugins.objects.expectations.static import Static
 from harness.plugins.paths.expectations.fraction import FractionCheck

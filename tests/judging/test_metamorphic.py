@@ -15,10 +15,10 @@ from harness.judging.expectations.always import Always
 from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.released import Released
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
+from harness.plugins.formulas.expectations.until import Until
 from tests.judging.evidence import word_of
 from tests.judging.synthetic_run import lift_run
 from tests.judging.test_three_runs import THREE

@@ -37,10 +37,10 @@ import pytest
 from harness.core.pose_arrays import compose, relative
 from harness.judging.expectations.duration import DurationCheck
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.until import Until
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.language.language import PREDICATES
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.paths.expectations.fraction import FractionCheck
 from harness.recording.signals import Signals
 from harness.recording.step_results import SavedResult

@@ -10,11 +10,11 @@ from harness.core.spatial import SE3
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.never import Never
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.plugins.cameras.expectations.sees import Sees
+from harness.plugins.formulas.expectations.until import Until
 from harness.recording.run import ObjectRecord
 from harness.reporting.margins import deciding_measures
 from tests.cameras.camera_runs import (

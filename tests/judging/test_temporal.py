@@ -21,10 +21,10 @@ from harness.judging.temporal import (
     never,
     range_min,
     trailing_max,
-    until,
     with_future,
     without_gaps,
 )
+from harness.plugins.formulas.expectations.until import until_decision
 
 EPS = 1e-9
 
@@ -176,7 +176,7 @@ def test_an_until_is_decided_inside_the_span_in_which_the_second_held(hold):
     times = np.arange(8) * 0.01
     second = np.array([-1, -1, -1, -1, 0.5, 0.4, 0.6, -2.0])
     first = np.full(8, 3.0)
-    decision, is_second = until(first, second, times, hold, None)
+    decision, is_second = until_decision(first, second, times, hold, None)
     assert is_second
     assert decision.holds
     expected = (0.4, 5) if hold else (0.6, 6)
@@ -187,7 +187,7 @@ def test_an_until_that_does_not_hold_before_is_decided_by_the_first():
     times = np.arange(5) * 0.01
     first = np.array([1.0, -0.3, 1.0, 9.0, -9.0])
     second = np.array([-1.0, -1.0, -1.0, 0.5, 0.5])
-    decision, is_second = until(first, second, times, None, None)
+    decision, is_second = until_decision(first, second, times, None, None)
     assert (is_second, decision.holds) == (False, False)
     assert (decision.value, decision.index) == (-0.3, 1)
 
@@ -245,13 +245,13 @@ def test_a_window_that_was_cut_short_has_a_next_sample_and_one_after_any_span():
 
 def test_an_until_in_which_both_decide_is_decided_by_the_second():
     times = np.arange(3) * 0.1
-    decision, is_second = until(np.full(3, 0.5), np.array([-1, -1, 0.5]), times)
+    decision, is_second = until_decision(np.full(3, 0.5), np.array([-1, -1, 0.5]), times)
     assert (decision, is_second) == (Decision(0.5, 2, holds=True), True)
-    decision, is_second = until(np.array([0.5, 0.0, 9]), np.array([-1, -1, 0.5]), times)
+    decision, is_second = until_decision(np.array([0.5, 0.0, 9]), np.array([-1, -1, 0.5]), times)
     assert (decision, is_second) == (Decision(0.0, 1, holds=True), False)
-    decision, is_second = until(np.full(3, -1.0), np.array([0.0, 1.0, 2.0]), times)
+    decision, is_second = until_decision(np.full(3, -1.0), np.array([0.0, 1.0, 2.0]), times)
     assert (decision, is_second) == (Decision(0.0, 0, holds=True), True), "nothing is before it"
-    decision, _ = until(np.ones(3), np.array([-1, -0.5, 3.0]), times, within=0.1)
+    decision, _ = until_decision(np.ones(3), np.array([-1, -0.5, 3.0]), times, within=0.1)
     assert (decision.value, decision.index) == (-0.5, 1)
 
 

@@ -12,7 +12,6 @@ from harness.judging.expectations.joints import Joints
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.joints import gripper_joints, is_measured, near, resting_joints
 from harness.judging.window import (
@@ -25,6 +24,7 @@ from harness.judging.window import (
 from harness.plugins.arms.expectations.named_target import NamedTarget
 from harness.plugins.cameras.expectations.sees import Sees
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.objects.expectations.in_contact import InContact
 from harness.plugins.objects.expectations.on import On
 from harness.plugins.objects.expectations.static import Static

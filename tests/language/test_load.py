@@ -8,9 +8,9 @@ from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.language.reading.load import bundled_worlds, load_scenario, load_world, parse_scenario
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.scene.steps.add_object import AddObject
 from harness.plugins.scene.steps.allow_collisions import AllowCollisions
 from harness.plugins.scene.steps.clear_objects import ClearObjects

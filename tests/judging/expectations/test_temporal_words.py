@@ -12,11 +12,11 @@ from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
 from harness.judging.expectations.released import Released
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.language.poses import Pose
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.objects.expectations.displaced import Displaced
 from harness.plugins.objects.expectations.in_contact import InContact
 from harness.plugins.objects.expectations.static import Static

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.lifted import Lifted
-from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
+from harness.plugins.formulas.expectations.until import Until
 from harness.plugins.objects.expectations.displaced import Displaced
 from harness.plugins.objects.expectations.in_contact import InContact
 from harness.plugins.objects.expectations.on import On

@@ -56,7 +56,7 @@ class Until(TemporalWord):
 
         def decide(margins: list[FloatArray], times: FloatArray) -> tuple[Decision, bool]:
             first, second = margins
-            return temporal.until(first, second, times, hold, terms.within)
+            return until_decision(first, second, times, hold, terms.within)
 
         future = [temporal.with_future(margins, np.inf) for margins in low]
         is_open = bool(window.cut_short) and decide(future, temporal.later(times))[0].holds
@@ -142,3 +142,43 @@ def _low(margins: MarginSignal, skipped: float) -> FloatArray:
     if not np.isfinite(values).any():
         raise NotReached("what it is about was not there in the time it is judged over")
     return values
+
+
+def until_decision(
+    first: FloatArray,
+    second: FloatArray,
+    times: FloatArray,
+    hold: float | None = None,
+    within: float | None = None,
+) -> tuple[Decision, bool]:
+    """The best moment at which the second begins, the first having held at all samples before it.
+
+    At that moment itself the first need not hold.
+
+    Args:
+        first: Margins of what must hold before, shape (n,), n > 0, without NaN.
+        second: Margins of what must come, shape (n,), without NaN.
+        hold: The second must be held so long without a break [s].
+        within: Latest beginning of the second after the first sample [s].
+
+    Returns:
+        The decision, and whether it was a sample of the second that decided.
+
+    Raises:
+        TooShort: No sample at which the second may begin is followed by `hold` seconds.
+    """
+    starts, ends = temporal.spans(times, hold, within)
+    coming = temporal.range_min(second, starts, ends)
+    before = np.concatenate([[np.inf], np.minimum.accumulate(first)])[starts]
+    values = np.minimum(coming, before)
+    came = coming >= 0
+    if came.any() and not (values >= 0).any():  # it came: what did not hold before says why
+        values = np.where(came, values, -np.inf)
+    best = int(np.argmax(values))
+    value, is_second = float(values[best]), bool(coming[best] <= before[best])
+    start, end = int(starts[best]), int(ends[best])
+    if is_second:
+        index = start + int(np.argmin(second[start : end + 1]))
+    else:
+        index = int(np.argmin(first[:start]))
+    return Decision(value, index, bool(value >= 0)), is_second
