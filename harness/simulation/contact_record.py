@@ -17,13 +17,14 @@ from harness.simulation.model import PhysicsModel
 ROWS = 2**16  # Samples for which the first arrays have room; what is not used takes no memory
 CONTACTS_PER_ROW = 24  # Contacts for which there is room first; more make arrays grow sooner
 BLOCK = 2**17  # Contacts that are sorted at a time
-BYTES = 52  # Memory that one contact takes in the arrays
+AT_ONCE = 500  # Samples whose contacts are converted at once
+CONTACT = np.dtype("f8, 2i4, 3f4, 3f4, 3f4", align=True)
+CONTACT.names = "force", "geoms", "normal", "point", "friction"
 
 BodyPair = tuple[str, str]
 Array = np.ndarray[Any, Any]
 
 _ROWS = np.arange(3)  # of a contact's forces: normal, then friction along the other two axes
-_NOTHING = np.zeros(3)
 
 
 class ContactRecord:
@@ -34,94 +35,95 @@ class ContactRecord:
     """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
-        size = ROWS * CONTACTS_PER_ROW
         self._physics = physics
         self._data = data
         self._end = np.zeros(ROWS, dtype=np.int64)
-        self._geoms = np.empty((size, 2), dtype=np.int32)
-        self._forces = np.empty(size)
-        self._normals = np.empty((size, 3), dtype=np.float32)
-        self._points = np.empty((size, 3), dtype=np.float32)
-        self._frictions = np.empty((size, 3), dtype=np.float32)
+        self._contacts = np.empty(ROWS * CONTACTS_PER_ROW, CONTACT)
         self._sleep = b""  # the state of sleep for which contacts of bodies asleep are known
-        self._asleep = tuple(values[:0] for values in self._values)
-        self.count = 0
+        self._asleep = self._contacts[:0]
+        self._copied: list[list[Array]] = []  # of the last samples, which are converted together
+        self._rows = self._count = 0  # samples and contacts that are converted
 
-    def reserve(self, rows: int) -> None:
-        """Make room for so many samples."""
-        if rows > len(self._end):
-            self._end = doubled(self._end, rows)
+    @property
+    def nbytes(self) -> int:
+        """The memory that the contacts of all samples take."""
+        self._convert()
+        return self._count * CONTACT.itemsize
 
     def rewind(self, rows: int) -> None:
         """Forget the contacts of all samples after the first `rows`."""
-        self.count = int(self._end[rows - 1]) if rows else 0
+        self._convert()
+        self._rows, self._count = rows, self._begin(rows)
         self._sleep = b""
 
-    def keep(self, row: int) -> None:
-        """Copy the contacts of the current physics state as those of one sample."""
-        if self._data.tree_asleep.tobytes() != self._sleep:
-            self._find_asleep(row)
-        begin, count, asleep = self.count, self._data.ncon, self._asleep
-        middle = begin + count
-        self._end[row] = self.count = end = middle + len(asleep[0])
-        if end > len(self._forces):
-            self._grow()
-        if end > middle:
-            for values, of_asleep in zip(self._values, asleep, strict=True):
-                values[middle:end] = of_asleep
-        if not count:
+    def keep(self) -> None:
+        """Copy the contacts of the current physics state as those of the next sample."""
+        data = self._data
+        if data.tree_asleep.tobytes() != self._sleep:
+            self._find_asleep()
+        contact = data.contact
+        parts = contact.geom, contact.pos, contact.frame, contact.efc_address, data.efc_force
+        self._copied.append([part.copy() for part in parts])
+        if len(self._copied) == AT_ONCE:
+            self._convert()
+
+    def _convert(self) -> None:
+        """Put the copied contacts of the last samples into the record."""
+        copied, self._copied = self._copied, []
+        if not copied:
             return
-        contact = self._data.contact
-        axes, addresses = contact.frame, contact.efc_address
-        self._geoms[begin:middle] = contact.geom
-        self._points[begin:middle] = contact.pos
-        self._normals[begin:middle] = axes[:, :3]
+        geoms, points, axes, addresses, forces = map(np.concatenate, zip(*copied, strict=True))
+        counts, sizes = ([len(each[part]) for each in copied] for part in (3, 4))
         # An inactive contact has no constraint rows and the address -1; it has no forces.
-        padded = np.concatenate([self._data.efc_force, _NOTHING])
-        pressed = padded.take(np.where(addresses < 0, len(padded) - 3, addresses)[:, None] + _ROWS)
-        self._forces[begin:middle] = pressed[:, 0]
+        starts = addresses + np.repeat(np.cumsum(sizes) - sizes, counts)
+        starts = np.where(addresses < 0, len(forces), starts)
+        pressed = np.append(forces, np.zeros(3)).take(starts[:, None] + _ROWS)
         friction = pressed[:, 1:2] * axes[:, 3:6]
         friction += pressed[:, 2:] * axes[:, 6:]
-        self._frictions[begin:middle] = friction
+        found = np.empty(len(addresses), CONTACT)
+        found["force"], found["friction"] = pressed[:, 0], friction
+        found["geoms"], found["normal"], found["point"] = geoms, axes[:, :3], points
+        begin, row, samples = self._count, self._rows, len(copied)
+        sizes = np.column_stack([counts, np.full(samples, len(self._asleep))])
+        ends = begin + np.cumsum(sizes.sum(axis=1))
+        self._count, self._rows = int(ends[-1]), row + samples
+        self._end = enlarged(self._end, self._rows)
+        self._end[row:][:samples] = ends
+        self._contacts = enlarged(self._contacts, self._count)
+        is_awake = np.repeat(np.tile([True, False], samples), sizes.ravel())
+        self._contacts[begin : self._count][is_awake] = found
+        self._contacts[begin : self._count][~is_awake] = np.tile(self._asleep, samples)
 
-    def _find_asleep(self, row: int) -> None:
+    def _find_asleep(self) -> None:
         """Take the contacts of bodies asleep from the sample before."""
+        self._convert()
         model, data = self._physics.model, self._data
         self._sleep = data.tree_asleep.tobytes()
         is_asleep = np.append(data.tree_asleep, -1) >= 0
         trees = model.body_treeid[model.geom_bodyid]  # -1, the last, for a static body
-        before = slice(self._begin(max(0, row - 1)), self._begin(row))
-        chosen = is_asleep[trees[self._geoms[before]]].any(axis=1)
-        self._asleep = tuple(values[before][chosen] for values in self._values)
-
-    @property
-    def _values(self) -> tuple[Array, ...]:
-        return self._geoms, self._forces, self._normals, self._points, self._frictions
+        before = self._contacts[self._begin(max(0, self._rows - 1)) : self._count]
+        self._asleep = before[is_asleep[trees[before["geoms"]]].any(axis=1)]
 
     def _begin(self, row: int) -> int:
         """The first contact of a sample."""
         return int(self._end[row - 1]) if row else 0
-
-    def _grow(self) -> None:
-        for name in ("_geoms", "_forces", "_normals", "_points", "_frictions"):
-            setattr(self, name, doubled(getattr(self, name), self.count))
 
     def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
         found: dict[BodyPair, FloatArray] = {}
         for numbers, rows, contacts in self._by_pair(first, last):
             sums = found.setdefault(self._pair(*numbers), np.zeros(last - first))
-            _add(sums, rows, self._forces[contacts])
+            _add(sums, rows, contacts["force"])
         return {pair: found[pair] for pair in sorted(found)}
 
     def force_on(self, own: Set[str], first: int, last: int) -> tuple[float, FloatArray]:
         """Mean sum of some bodies' normal forces on all others, and their vector sum, (3,) [N]."""
         names, total, push = self._physics.body_names, 0.0, np.zeros(3)
         for numbers, _, contacts in self._by_pair(first, last):
-            inside, force = [each for each in numbers if names[each] in own], self._forces[contacts]
+            inside, force = [each for each in numbers if names[each] in own], contacts["force"]
             if len(inside) == 1:
                 total += float(force.sum())
-                push += (force * self._signs(contacts, inside[0])) @ self._normals[contacts]
+                push += (force * self._signs(contacts, inside[0])) @ contacts["normal"]
         return total / (last - first), push / (last - first)
 
     def presses(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
@@ -135,10 +137,10 @@ class ContactRecord:
         found: dict[BodyPair, FloatArray] = {}
         for pair, link, rows, contacts in self._by_link(first, last):
             sums = found.setdefault(pair, np.zeros((last - first, 7)))
-            force = self._forces[contacts]
+            force = contacts["force"]
             signed = self._signs(contacts, link) * force
-            weighted = [*(self._points[contacts] * force[:, None]).T]
-            vectors = [*(self._normals[contacts] * signed[:, None]).T]
+            weighted = [*(contacts["point"] * force[:, None]).T]
+            vectors = [*(contacts["normal"] * signed[:, None]).T]
             for column, values in enumerate((*weighted, *vectors, force)):
                 _add(sums[:, column], rows, values)
         for pair, sums in found.items():
@@ -159,7 +161,7 @@ class ContactRecord:
         found: dict[BodyPair, FloatArray] = {}
         for pair, link, rows, contacts in self._by_link(first, last):
             sums = found.setdefault(pair, np.zeros((last - first, 3)))
-            on_other = self._frictions[contacts] * self._signs(contacts, link)[:, None]
+            on_other = contacts["friction"] * self._signs(contacts, link)[:, None]
             for column in range(3):
                 _add(sums[:, column], rows, on_other[:, column])
         return {pair: found[pair] for pair in sorted(found)}
@@ -173,7 +175,7 @@ class ContactRecord:
                 continue
             pair = self._pair(*numbers)
             below = next(number for number in numbers if names[number] == pair[0])
-            upward = self._forces[contacts] * self._normals[contacts, 2]
+            upward = contacts["force"] * contacts["normal"][:, 2]
             sums = found.setdefault(pair, np.zeros(last - first))
             _add(sums, rows, self._signs(contacts, below) * upward)
         return {pair: found[pair] for pair in sorted(found)}
@@ -202,9 +204,9 @@ class ContactRecord:
             pair = self._pair(*numbers)
             if chosen.isdisjoint(pair) or not poses.keys() >= set(pair):
                 continue
-            presses = (self._forces[contacts] > 0) & (rows > 0)
+            presses = (contacts["force"] > 0) & (rows > 0)
             rows, contacts = rows[presses], contacts[presses]
-            points, normals = self._points[contacts], self._normals[contacts]
+            points, normals = contacts["point"], contacts["normal"]
             ways = [_way_of_points(poses[name], rows, points, surfaces.get(name)) for name in pair]
             way = np.nan_to_num(ways[0] - ways[1])
             way -= np.sum(way * normals, axis=1, keepdims=True) * normals
@@ -216,7 +218,7 @@ class ContactRecord:
         """Contacts of a link of the robot with any other body, as `_by_pair` yields them.
 
         Yields:
-            The names of the two, the id of the link, the samples, and the contacts' indices.
+            The names of the two, the id of the link, the samples, and the contacts.
         """
         robot = self._physics.robot_bodies
         for (one, other), rows, contacts in self._by_pair(first, last):
@@ -231,24 +233,25 @@ class ContactRecord:
 
         Yields:
             The ids of two bodies, the smaller first; then, for their contacts in some samples, in
-            the order of recording, the sample counted from `first` and the contact's index.
+            the order of recording, the sample counted from `first` and the contact.
         """
+        self._convert()
         ends = self._end[first:last]
         row = 0
         while row < len(ends):
             begin = self._begin(first + row)
             stop = max(row + 1, int(np.searchsorted(ends, begin + BLOCK, side="right")))
             rows = np.repeat(np.arange(row, stop), np.diff(ends[row:stop], prepend=begin))
-            for numbers, contacts in self._sorted(begin, begin + len(rows)):
-                yield numbers, rows[contacts - begin], contacts
+            for numbers, places in self._sorted(begin, begin + len(rows)):
+                yield numbers, rows[places - begin], self._contacts[places]
             row = stop
 
     def _sorted(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
-        """Ids of two bodies, the smaller first, and the indices of the contacts between them."""
+        """Ids of two bodies, the smaller first, and the places of the contacts between them."""
         if begin == end:
             return
         size = self._physics.model.nbody
-        one, other = self._physics.model.geom_bodyid[self._geoms[begin:end].T]
+        one, other = self._physics.model.geom_bodyid[self._contacts["geoms"][begin:end].T]
         codes = np.minimum(one, other) * size + np.maximum(one, other)
         codes = codes.astype(np.min_scalar_type(size * size))  # 16 bits are sorted in linear time
         order = np.argsort(codes, kind="stable")
@@ -262,9 +265,8 @@ class ContactRecord:
 
     def _signs(self, contacts: Array, body: int) -> Array:
         """1 where a contact's normal, from its first geom to its second, leaves a body; else -1."""
-        return np.where(
-            self._physics.model.geom_bodyid[self._geoms[contacts, 0]] == body, 1.0, -1.0
-        )
+        bodies = self._physics.model.geom_bodyid[contacts["geoms"][:, 0]]
+        return np.where(bodies == body, 1.0, -1.0)
 
     def _pair(self, first: int, second: int) -> BodyPair:
         """The names of two bodies: the robot's link first, otherwise in alphabetical order."""
@@ -299,8 +301,10 @@ def _add(sums: FloatArray, rows: Array, values: Array) -> None:
     sums[rows[0] : rows[0] + len(part)] += part
 
 
-def doubled(values: Array, needed: int) -> Array:
-    """Copy values into an array at least twice as long; its new part takes no memory until used."""
+def enlarged(values: Array, needed: int) -> Array:
+    """The values, in an array twice as long if needed; its new part takes no memory until used."""
+    if needed <= len(values):
+        return values
     larger = np.empty((max(2 * len(values), needed), *values.shape[1:]), values.dtype)
     larger[: len(values)] = values
     return larger

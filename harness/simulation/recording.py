@@ -18,7 +18,7 @@ from harness.recording.execution_failures import LengthFailure
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.signals import Signals
 from harness.simulation.adhesion import Adhesion
-from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
+from harness.simulation.contact_record import ROWS, BodyPair, ContactRecord, enlarged
 from harness.simulation.model import ObjectPlace, PhysicsModel
 from harness.simulation.step_state import refresh
 from harness.simulation.wrench_sensors import WrenchSensors
@@ -90,14 +90,13 @@ class Recording:
         forward, check, integrate = mujoco.mj_forward, mujoco.mj_checkAcc, mujoco.mj_implicit
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
         positions, velocities, sensed = self._qpos, self._qvel, self._sensors
-        keep_contacts = self.contacts.keep
-        adhesion = self._adhesion
+        keep_contacts, adhesion = self.contacts.keep, self._adhesion
         for row in range(first, first + steps):
             control[:] = controls[row - first]
             forward(model, data)
             if row > first:
                 sensed[row - 1] = sensors
-                keep_contacts(row - 1)
+                keep_contacts()
             if adhesion is not None:
                 adhesion.apply(row)
             check(model, data)
@@ -125,7 +124,7 @@ class Recording:
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))
-        size = (self.count + steps) * per_row + BYTES * self.contacts.count
+        size = (self.count + steps) * per_row + self.contacts.nbytes
         if size > MOST_BYTES:
             raise StepFailed(
                 "TIMED_OUT",
@@ -155,7 +154,7 @@ class Recording:
         """Record the forces of the current state without changing the physics state."""
         refresh(self._physics.model, self._data)
         self._sensors[self.count - 1] = self._data.sensordata
-        self.contacts.keep(self.count - 1)
+        self.contacts.keep()
 
     def _refuse_divergence(self, first: int) -> None:
         rows = self._qpos[first : self.count], self._qvel[first : self.count]
@@ -169,11 +168,8 @@ class Recording:
         )
 
     def _reserve(self, rows: int) -> None:
-        self.contacts.reserve(rows)
-        if rows <= len(self._qpos):
-            return
         for name in ("_qpos", "_qvel", "_sensors", "_commands", "_command_velocities"):
-            setattr(self, name, doubled(getattr(self, name), rows))
+            setattr(self, name, enlarged(getattr(self, name), rows))
 
     @property
     def timestep(self) -> float:

@@ -68,7 +68,7 @@ def test_a_contact_that_only_touches_does_not_take_the_force_of_another_constrai
     mujoco.mj_forward(physics.model, data)
     data.efc_force[0] = 123.0
     record = ContactRecord(physics, data)
-    record.keep(0)
+    record.keep()
     forces = record.forces(0, 1)
     expected, wrench = dict.fromkeys(forces, 0.0), np.zeros(6)
     for index in range(data.ncon):
@@ -111,7 +111,7 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
     total, carried, pushed, rubbed = {}, {}, {}, {}
     for row in range(samples):
         mujoco.mj_step(physics.model, data)
-        record.keep(row)
+        record.keep()
         for index in range(data.ncon):
             mujoco.mj_contactForce(physics.model, data, index, wrench)
             bodies = physics.model.geom_bodyid[data.contact.geom[index]].tolist()
@@ -179,7 +179,7 @@ def test_objects_slide_as_far_as_the_points_at_which_they_touch(
     for row in range(samples):
         data.qvel[place.dof : place.dof + 6] = *velocity, *turning
         mujoco.mj_forward(physics.model, data)
-        record.keep(row)
+        record.keep()
         poses[row] = data.qpos[place.qpos : place.qpos + 7]
         mujoco.mj_integratePos(physics.model, data.qpos, data.qvel, timestep)
     floor = np.tile(FLOOR.pose.as_vector(), (samples, 1))
