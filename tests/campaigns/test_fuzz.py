@@ -33,7 +33,7 @@ def sleep(_folder, data):
         time.sleep(3600)
 
 
-@pytest.mark.nightly(but=[0])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("read", "cap", "limit"), [(spin, "LONGEST", 0.3), (sleep, "LONGEST_WAIT", 2.0)]
 )

@@ -142,7 +142,7 @@ def test_a_stream_that_takes_nothing_is_no_failed_scenario(folder, redirection, 
         assert "standard output cannot be written: No space left on device" in done.stderr
 
 
-@pytest.mark.nightly(but=["1-check short.scenario.yaml --json", "1-list planners"])
+@pytest.mark.nightly(but=["1-list planners"])
 @pytest.mark.parametrize("command", ["--help", "list planners", "check short.scenario.yaml --json"])
 @pytest.mark.parametrize("is_unbuffered", ["1", ""])
 def test_no_command_that_cannot_write_says_failed(folder, command, is_unbuffered):

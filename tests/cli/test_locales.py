@@ -56,7 +56,7 @@ def folder(tmp_path):
     return tmp_path
 
 
-@pytest.mark.nightly(but=["ascii_only-run"])
+@pytest.mark.nightly(but=["ascii_only-check"])
 @pytest.mark.parametrize("verb", ["check", "run", "explain"])
 def test_a_command_reads_utf_8_and_writes_what_the_terminal_has(folder, environment, verb):
     done = subprocess.run(

@@ -166,7 +166,7 @@ OF_ARM = OBJECT.replace("{model: open_manipulator_x}", "{urdf: arm.urdf}").repla
 )
 
 
-@pytest.mark.nightly(but=["scipy-object"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("text", "place"),
     [(OBJECT, "a.scenario.yaml:4:11: object 'part'"), (OF_ARM, "arm.urdf:4:38: link 'tip'")],
@@ -193,7 +193,7 @@ def test_a_mesh_without_what_reads_it_is_refused_at_its_line(
     assert f"{sys.executable} -m pip install" in said
 
 
-@pytest.mark.nightly(but=["part.stl-trimesh"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("file", "package"), [("part.stl", "trimesh"), ("part.dae", "collada"), ("part.obj", "")]
 )

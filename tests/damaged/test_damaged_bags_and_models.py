@@ -150,15 +150,9 @@ NUMERIC = [place for place in places_in(DOCUMENT) if isinstance(value_at(place),
 
 @pytest.mark.nightly(
     but=[
-        "steps.1.move_to.pose.xyz.0",
-        "steps.1.move_to.pose.xyz.1",
         "steps.1.move_to.pose.xyz.2",
         "robot.base.rpy.0",
-        "robot.base.rpy.1",
-        "robot.base.rpy.2",
-        "objects.1.pose.xyz.0",
         "objects.1.pose.xyz.1",
-        "objects.1.pose.xyz.2",
     ]
 )
 @pytest.mark.parametrize("place", NUMERIC, ids=lambda place: ".".join(map(str, place)))
@@ -194,7 +188,7 @@ def test_no_damaged_bag_ends_in_a_traceback(base, seed):
     bag_trial(base, seed)
 
 
-@pytest.mark.nightly(but=["0", "1", "2", "3", "5"])
+@pytest.mark.nightly(but=[0, 1, 2, 5])
 @pytest.mark.parametrize("seed", range(40))
 def test_no_damaged_robot_ends_in_a_traceback(base, seed):
     robot_trial(base, seed)

@@ -113,7 +113,7 @@ PYTEST = [
 ]
 
 
-@pytest.mark.nightly(but=["costs-0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("words", PYTEST)
 def test_the_pytest_commands_of_pages_find_tests(words):
     arguments = words[words.index("pytest") + 1 :]

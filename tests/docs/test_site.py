@@ -151,7 +151,7 @@ def test_every_link_and_anchor_of_the_site_exists(site, pages):
     assert broken == []
 
 
-@pytest.mark.nightly(but=["page_of_packages"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["site", "page_of_packages"])
 def test_the_site_requests_nothing_from_other_hosts(name, request):
     site = request.getfixturevalue(name)

@@ -414,7 +414,22 @@ def test_no_corrupted_picture_goes_on_passing(kind):
     assert survived == []
 
 
-@pytest.mark.nightly(only=["until", "lifted", "placed", "in", "grasped"])
+@pytest.mark.nightly(
+    only=[
+        "until",
+        "lifted",
+        "placed",
+        "in",
+        "grasped",
+        "slip",
+        "formula",
+        "formula 3",
+        "joint 2",
+        "inserted",
+        "joint",
+        "static 2",
+    ]
+)
 @pytest.mark.parametrize("case", NAMED)
 def test_no_corrupted_signal_goes_on_passing(case):
     found, tried = survivors(case)

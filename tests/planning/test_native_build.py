@@ -43,6 +43,7 @@ def test_other_sources_get_a_library_of_another_name_which_replaces_the_old_one(
     assert [*copy.glob("*.so")] == [second]
 
 
+@pytest.mark.nightly
 def test_sources_that_do_not_compile_leave_no_half_written_library(copy):
     first = compiled(copy)
     (copy / "certify.c").write_text("int certify(;\n")

@@ -61,6 +61,7 @@ def test_every_planner_repeats_itself_inside_its_budget(trial, name):
     assert first.checks < 3000 + 500  # the edge at hand is finished
 
 
+@pytest.mark.nightly
 def test_every_planner_repeats_itself_in_a_fresh_process(trial):
     """Of another hash seed; the budget is what each of them mostly needs."""
     here = {name: list(signature(trial.search(name, seed=8))) for name in planner_names()}

@@ -77,6 +77,7 @@ expect: [{duration: {at_most: 1 s}}]
 """
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("one", "other", "outcome", "sentences"),
     [
@@ -136,6 +137,7 @@ def test_steps_are_aligned_and_a_new_one_stands_alone(page):
     ]
 
 
+@pytest.mark.nightly
 def test_both_robots_are_drawn_over_and_next_to_each_other(visit, file):
     page = visit(file, width=1440, height=900, has_scene=True).page
     page.click("#steps .step >> nth=2")

@@ -79,7 +79,7 @@ def test_a_robot_of_the_package_moves(site, tmp_path):
     assert "robot.model: 'gantry' is not known" in out
 
 
-@pytest.mark.nightly(but=["steps"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_lists_name_the_package(site, tmp_path, kind):
     rows = [row.split() for row in harness(tmp_path, "list", kind, site=site).splitlines()]

@@ -109,6 +109,7 @@ def test_a_malformed_line_costs_nothing_else(server, line):
     assert not list(server.root.iterdir())
 
 
+@pytest.mark.nightly(only=[12, 13])
 @pytest.mark.parametrize(
     ("tool", "arguments"),
     [

@@ -92,6 +92,7 @@ def test_the_core_checks_the_lessons_of_urdf_robots_and_runs_one(core, tmp_path)
     assert [*tmp_path.rglob("report.html")]
 
 
+@pytest.mark.nightly
 def test_a_robot_in_xacro_is_refused_by_the_core(core, tmp_path):
     done = core("check", "scenarios/lessons/03_ur_sixteen_steps.scenario.yaml")
     assert done.returncode == 2

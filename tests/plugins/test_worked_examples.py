@@ -69,6 +69,7 @@ def test_a_class_that_is_not_built_in_is_an_attribute_error(name):
         getattr(facade, name)
 
 
+@pytest.mark.nightly
 def test_the_command_of_the_guide_runs_and_is_listed(tmp_path):
     page = (ROOT / "docs/guides/python.md").read_text(encoding="utf-8")
     (example,) = [block for block in BLOCK.findall(page) if "(Command)" in block]

@@ -426,6 +426,7 @@ def test_stepwise_continues_with_the_case_that_failed(pytester, write):
     pytester.runpytest(*options).assert_outcomes(failed=1, deselected=1)
 
 
+@pytest.mark.nightly
 def test_a_failed_case_is_compared_with_the_last_one_that_passed(pytester, write):
     text = (
         "scenario: still\nrobot: open_manipulator_x\n"

@@ -40,6 +40,10 @@ def installed():
     return next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
+_EMPTY = {}
+"""Empty pages of each browser, to be used again: that costs half of a new one."""
+
+
 @contextmanager
 def launched(*options):
     """The installed browser, drawing in software."""
@@ -49,6 +53,7 @@ def launched(*options):
         options = [*SOFTWARE_GL, *options]
         browser = playwright.chromium.launch(executable_path=installed(), args=options)
         yield browser
+        _EMPTY.pop(browser, None)
         browser.close()
 
 
@@ -115,9 +120,20 @@ class Visit:
         self.page = page
         self.complaints = []
         self.requests = []
-        page.on("console", lambda m: m.type == "error" and self.complaints.append(m.text))
-        page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        page.on("request", lambda request: self.requests.append(request.url))
+        self._listeners = {
+            "console": lambda m: m.type == "error" and self.complaints.append(m.text),
+            "pageerror": lambda error: self.complaints.append(str(error)),
+            "request": lambda request: self.requests.append(request.url),
+        }
+        for event, listener in self._listeners.items():
+            page.on(event, listener)
+
+    def leave(self):
+        """Empty the page, as it is for the next visit."""
+        for event, listener in self._listeners.items():
+            self.page.remove_listener(event, listener)
+        self.page.goto("about:blank")
+        self.page.emulate_media(media="null", color_scheme="null")
 
     def time(self):
         return float(self.page.get_attribute("#track", "aria-valuenow"))
@@ -133,17 +149,24 @@ def visits(browser):
     Only with `has_scene` they have a 3D view: drawn in software, it takes longer than all the rest.
     """
     opened = []
+    empty = _EMPTY.setdefault(browser, [])
 
     def open_page(file, place="", *, has_scene=False, **options):
         size = {"width": options.pop("width", 1100), "height": options.pop("height", 720)}
         scripts = options.pop("scripts", True)
-        context = new_context(
-            browser, viewport=size, java_script_enabled=scripts, offline=True, **options
-        )
-        visit = Visit(context.new_page())
-        opened.append((context, visit))
-        if not has_scene:
-            visit.page.add_init_script(NO_WEBGL)
+        is_plain = scripts and not has_scene and not options
+        if is_plain and empty:
+            page = empty.pop()
+            page.set_viewport_size(size)
+        else:
+            context = new_context(
+                browser, viewport=size, java_script_enabled=scripts, offline=True, **options
+            )
+            page = context.new_page()
+            if not has_scene:
+                page.add_init_script(NO_WEBGL)
+        visit = Visit(page)
+        opened.append((is_plain, visit))
         visit.page.goto(f"{Path(file).as_uri()}{place}")
         if scripts:
             ready = "document.documentElement.dataset.ready === 'yes'"
@@ -151,8 +174,12 @@ def visits(browser):
         return visit
 
     yield open_page
-    for context, visit in opened:
-        context.close()
+    for is_plain, visit in opened:
+        if is_plain:
+            visit.leave()
+            empty.append(visit.page)
+        else:
+            visit.page.context.close()
         assert visit.complaints == []
         local = ("file:", "data:", "blob:")
         remote = [url for url in visit.requests if not url.startswith(local)]

@@ -77,6 +77,7 @@ def test_cause_fault_finding_and_command_are_at_the_top(opened):
     assert page.locator(".band.injected").count() == 1
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("value", "time", "place", "opens"),
     [

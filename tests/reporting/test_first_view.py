@@ -61,6 +61,7 @@ expect:
 """
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("turn", ["90 deg", "-120 deg"])
 def test_a_failed_run_opens_on_the_arm_at_that_moment(recorded_run, turn):
     stored = read_run(recorded_run(RAISED.format(turn=turn), outcome="failed") / "run")

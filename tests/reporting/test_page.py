@@ -51,7 +51,9 @@ def shared_scene(browser, failed_run):
 def drawn(shared_scene):
     """The page with its 3D view, which tests share, too."""
     put_back(shared_scene.page, "#t=0&tab=expect")
-    return shared_scene
+    yield shared_scene
+    shared_scene.page.emulate_media(color_scheme="light")
+    shared_scene.page.set_viewport_size({"width": 1100, "height": 720})
 
 
 def test_the_page_reports_outcome_steps_and_expectations(opened):
@@ -88,6 +90,7 @@ def test_the_robot_is_drawn_and_moves_with_the_time(drawn):
     assert np.abs(picture(page) - start).max() > 40
 
 
+@pytest.mark.nightly
 def test_a_page_that_shows_a_still_moment_requests_no_frames(drawn):
     page = drawn.page
     page.evaluate("""window.lastFrame = 0, window.requested = 0,
@@ -240,6 +243,7 @@ def test_keys_zoom_the_plots(opened):
     assert page.locator("#plots.zoomed").count() == 0
 
 
+@pytest.mark.nightly
 def test_a_legend_hides_a_line_everywhere(opened):
     page = opened.page
     chips = page.locator(".legend button[title='elbow_joint']")
@@ -302,18 +306,18 @@ def test_without_scripts_the_summary_is_there_to_read(visit, failed_run):
     assert opened.page.locator("#summary .pictures img").count() >= 2
 
 
-def test_a_telephone_sees_everything_without_scrolling_sideways(visit, failed_run):
-    opened = visit(failed_run / "report.html", width=390, height=800, has_scene=True)
-    page = opened.page
+def test_a_telephone_sees_everything_without_scrolling_sideways(drawn):
+    page = drawn.page
+    page.set_viewport_size({"width": 390, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    assert page.evaluate("scrollY") == 0  # opened at its failure, whose verdict is farther down
     for name in ("#view", "#track", "#steps", "#tabs", ".plot canvas"):
         assert page.locator(name).first.bounding_box()["width"] > 200, name
     assert picture(page).std() > 10
 
 
-def test_it_prints_on_one_or_two_pages(visit, failed_run):
-    page = visit(failed_run / "report.html", color_scheme="dark", has_scene=True).page
+def test_it_prints_on_one_or_two_pages(drawn):
+    page = drawn.page
+    page.emulate_media(color_scheme="dark")
     page.evaluate(COUNT_PLOTS)
     pdf = page.pdf(prefer_css_page_size=True)
     pages = len(re.findall(rb"/Type\s*/Page\b(?!s)", pdf))
@@ -322,6 +326,7 @@ def test_it_prints_on_one_or_two_pages(visit, failed_run):
     assert page.evaluate("document.documentElement.dataset.theme") is None, "dark again"
 
 
+@pytest.mark.nightly
 def test_a_browser_without_webgl_still_shows_the_rest(failed_run, visit):
     opened = visit(failed_run / "report.html", has_scene=False)
     page = opened.page
@@ -378,9 +383,10 @@ CONTRASTS = """() => {
 
 @pytest.mark.nightly(but=["dark"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_stands_out_from_its_background(visit, failed_run, scheme):
+def test_text_stands_out_from_its_background(drawn, scheme):
     """Contrast of 4.5, as WCAG 2.1 requires (1.4.3); what is switched off may have less."""
-    page = visit(failed_run / "report.html", color_scheme=scheme, has_scene=True).page
+    page = drawn.page
+    page.emulate_media(color_scheme=scheme)
     for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
         page.click(f"#tab-{tab}")
         found = page.evaluate(CONTRASTS)
@@ -416,6 +422,7 @@ def test_everything_that_can_be_used_has_a_name_and_can_be_reached_by_keys(drawn
 def test_every_tab_and_every_label_of_the_timeline_is_shown_whole_enough(visit, failed_run, width):
     """No tab is beyond the edge, and a band that is too narrow for its label has none."""
     page = visit(failed_run / "report.html", width=width).page
+    assert page.evaluate("scrollY") == 0  # opened at its failure, whose verdict is farther down
     assert page.evaluate(
         "(list => list.scrollWidth <= list.clientWidth)(document.querySelector('#tabs'))"
     )
@@ -427,6 +434,7 @@ def test_every_tab_and_every_label_of_the_timeline_is_shown_whole_enough(visit, 
     assert all(each > 40 for each in widths)
 
 
+@pytest.mark.nightly
 def test_a_failed_run_opens_near_what_failed_and_iso_shows_all_of_it(browser, failed_run):
     with visits(browser) as visit:
         page = visit(failed_run / "report.html", width=1100, height=720, has_scene=True).page

@@ -127,6 +127,7 @@ EMPTY = """() => [...document.querySelectorAll('.plot canvas')].map((canvas) => 
 })"""
 
 
+@pytest.mark.nightly
 def test_pictures_and_plots_come_back_when_the_graphics_process_ended(browser, tmp_path):
     """In a browser of its own, which keeps pages from a view after that."""
     options = [*SOFTWARE_GL, *WITHOUT_GRAPHICS_CARD]
@@ -164,6 +165,7 @@ def test_what_a_recording_does_not_show_is_grey_and_said_in_words(visit, tmp_pat
     assert page.locator("#steps .dot.open").count() == 1
 
 
+@pytest.mark.nightly
 def test_lines_of_one_plot_differ_when_there_are_more_than_colours(visit, tmp_path):
     pairs = [("left_finger", f"thing{number}") for number in range(30)]
     forces = {pair: np.full(200, 1.0 + number) for number, pair in enumerate(pairs)}
@@ -271,6 +273,7 @@ def test_only_stages_that_failed_are_printed_in_red(visit, tmp_path):
     assert page.locator("#steps .bad").count() == 1
 
 
+@pytest.mark.nightly
 def test_a_run_without_duration_says_so_where_plots_would_be(visit, tmp_path):
     page = visit(write(tmp_path, lift_run(1))).page
     assert "no simulated time" in page.inner_text("#plots")

@@ -94,6 +94,7 @@ def test_the_wheel_zooms_to_what_is_under_the_pointer(page):
     assert np.abs(picture(page) - first).mean() > 2, "another place is nearer now"
 
 
+@pytest.mark.nightly
 def test_a_click_on_a_body_shows_what_it_is(page, nested_run):
     robot = read_run(nested_run).run.robot
     page.click("#sides button:text-is('follow TCP')")
@@ -112,6 +113,7 @@ def test_a_click_on_a_body_shows_what_it_is(page, nested_run):
     assert found & set(robot.link_names)
 
 
+@pytest.mark.nightly
 def test_a_clearance_is_drawn_with_its_number(page):
     page.click(".verdict >> nth=0")
     label = page.locator(".labels output")

@@ -146,6 +146,7 @@ def test_rows_with_one_title_are_distinguished_and_link_back_from_their_runs(tmp
     assert link == "b/place/report.html#t=4.00&tab=planner&suite=../../index.html"
 
 
+@pytest.mark.nightly(but=[0, 1])
 @pytest.mark.parametrize(
     ("suite", "shown"),
     [("../../index.html", True), ("javascript:alert(1)", False), ("http://a.b/index.html", False)],
@@ -174,6 +175,7 @@ def columns(page, row):
     }
 
 
+@pytest.mark.nightly(but=[2])
 @pytest.mark.parametrize("history", [None, {}, {("a/pick.scenario.yaml", "c0"): [0.5, 0.4]}])
 def test_every_cell_stands_under_its_heading(history, tmp_path, visit):
     page = visit(write_suite(tmp_path, small_suite(), 3, history)[0], "#sort=number").page
@@ -200,6 +202,7 @@ def near(used):
     return SuiteCase(replace(passed(int(100 * used)), verdicts=(verdict(0.05 / used),)))
 
 
+@pytest.mark.nightly
 def test_a_bar_warns_from_nine_tenths_of_the_allowance(tmp_path, visit):
     cases = [near(used) for used in (0.5, 0.88, 0.91, 1.0)]
     page = visit(write_suite(tmp_path, SuiteRecord("passed", cases), 0)[0], "#sort=number").page
@@ -209,6 +212,7 @@ def test_a_bar_warns_from_nine_tenths_of_the_allowance(tmp_path, visit):
     assert [each.endswith(": nearly all of it") for each in said] == [False, False, True, True]
 
 
+@pytest.mark.nightly
 def test_a_row_without_a_bar_says_why(tmp_path, visit):
     of_zero = replace(verdict(0.06).measures[0], limit=0.0)
     turned = replace(verdict(0.06), expectation="turned by 30.0 deg", measures=(of_zero,))
@@ -251,6 +255,7 @@ def test_what_passed_is_said_in_the_title_and_at_its_filter(tmp_path, visit):
     assert "--history DIR" in page.inner_text("#made")
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("good", "verdict_of_rate", "sign"), [(19, "open", "open"), (10, "refuted", "failed")]
 )

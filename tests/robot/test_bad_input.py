@@ -273,7 +273,7 @@ def test_a_file_of_a_hundred_megabytes_is_refused_in_little_memory(tmp_path, fil
     assert peak < MEMORY
 
 
-@pytest.mark.nightly(but=["arm.xacro"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("file", FILES)
 def test_a_bomb_takes_little_memory(tmp_path, file):
     out, peak = checked(write(tmp_path, file, BOMB + FILES[file].partition("?>")[2]))

@@ -212,6 +212,7 @@ def test_safety_limits_can_be_switched_off_as_in_the_launch_file():
 # (OpenMANIPULATOR-X, within limits, 1500 samples), 0.353 and 0.253 (ur3e, ur5e, gripper, ±π, 600
 # samples). Those same shapes give 0.393 and 0.274 in this check (3000 samples), the bundled ones
 # 0.398 and 0.276: hence the tolerance.
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @pytest.mark.parametrize(
     ("spec", "expected"),
     [

@@ -23,6 +23,7 @@ def write_cup_and_ball(folder, inertial=INERTIAL):
     write_arm(folder, urdf.replace(wrist + SHAPE, wrist + BALL))
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("options", "scenario", "is_allowed"),
     [

@@ -109,6 +109,7 @@ def test_a_mesh_as_thin_as_its_rounding_is_flat_and_crashes_nothing(tmp_path, th
     assert "thin.stl is flat" in checked.stderr
 
 
+@pytest.mark.nightly
 def test_a_thin_mesh_has_a_hull(tmp_path):
     assert convex_hull(file_of(tmp_path, "thin.stl", stl(nearly_flat(1e-4)))).num_points > 4
 

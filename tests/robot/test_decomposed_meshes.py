@@ -113,7 +113,7 @@ def test_work_that_takes_long_is_reported_to_a_listener(capfd):
     assert (reports, capfd.readouterr().err) == (["computing"], "")
 
 
-@pytest.mark.nightly(but=[0])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("form", "words"), [("full", ("--in-process",)), ("full", ()), ("json", ())]
 )

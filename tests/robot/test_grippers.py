@@ -164,6 +164,7 @@ def test_every_gripper_goes_on_every_arm(model, gripper):
         assert arm.touching(state.positions) is None, state.name
 
 
+@pytest.mark.nightly
 def test_the_small_arm_lifts_a_part_with_the_other_gripper(tmp_path):
     reach = {"joint2": -0.6, "joint3": 0.4, "joint4": 0.2}
     x, _, z = Arm(robot(**SWAPPED)).pose("end_effector_link", reach).translation

@@ -77,6 +77,7 @@ def test_a_single_jaw_closes_an_object_on_the_palm(tmp_path):
     assert height[-1] - height[0] > 0.045
 
 
+@pytest.mark.nightly
 def test_a_palm_near_the_pads_does_not_touch_what_is_grasped(tmp_path):
     """The TCP stays above the depth of other grasps where the fingers are short."""
     palm = PALM.replace(

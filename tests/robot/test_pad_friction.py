@@ -72,7 +72,7 @@ STEPS = """
 """
 
 
-@pytest.mark.nightly(but=["0.001-failed"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(("friction", "outcome"), [(0.001, "failed"), (1.0, "passed")])
 def test_an_object_slips_out_of_slick_pads(tmp_path, friction, outcome):
     write(tmp_path, group=GROUP)

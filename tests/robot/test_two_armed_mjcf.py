@@ -20,6 +20,7 @@ expect:
 """
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(("name", "arm"), [("a", "port"), ("b", "starboard")])
 def test_either_hand_of_a_file_with_two_arms_picks(tmp_path, name, arm):
     (tmp_path / "two.xml").write_text(MJCF, encoding="utf-8")

@@ -59,6 +59,7 @@ def test_the_frame_of_a_link_is_where_the_link_starts(tmp_path):
     assert tcp[2] > 0.1
 
 
+@pytest.mark.nightly
 def test_a_scene_has_a_thousand_objects_at_most(tmp_path):
     dot = "{{name: o{}, static: true, pose: {{xyz: [5, 5, 5]}}, sphere: {{radius: 1 mm}}}}"
     rest = objects(*(dot.format(number) for number in range(1000)))  # and the floor

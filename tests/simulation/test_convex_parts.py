@@ -97,6 +97,7 @@ def distance(objects, poses):
     return least
 
 
+@pytest.mark.nightly
 def test_planner_and_physics_agree_on_random_poses_of_a_body_near_a_bin(tmp_path):
     mesh = {"name": "bin", "static": True, "mesh": {"file": str(bin_file(tmp_path))}}
     probe = {"name": "probe", "box": {"size": [0.03, 0.02, 0.04]}, "mass": 0.1}

@@ -194,7 +194,7 @@ def test_presses_say_where_fingers_touch_what_they_hold_and_which_way(gripper_ov
     assert all(link in gripper_over_table.link_names for link, _ in signals.presses)
 
 
-@pytest.mark.nightly(but=["0.3"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("mass", [0.3, 1.0])
 def test_friction_holds_up_to_coulombs_limit_and_slips_above_it(gripper_over_table, mass):
     """Friction at 0.81, 0.9 and 0.996 of mu times the sum of both fingers' forces; then above.

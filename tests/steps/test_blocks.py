@@ -78,6 +78,7 @@ def test_files_that_include_each_other_and_missing_files_are_refused(tmp_path):
     assert texts[1] == "'none.steps.yaml': there is no such file"
 
 
+@pytest.mark.nightly
 def test_repeats_that_multiply_are_bounded(tmp_path):
     inner = "- repeat:\n    times: 1000\n    steps:\n      - repeat:\n          times: 1000\n"
     found = problems(tmp_path, inner + "          steps: [{wait: 0.001}]")

@@ -109,7 +109,7 @@ def test_a_pitch_for_an_arm_of_six_joints_is_refused(tmp_path):
     assert "`grasp_pose` with a rotation" in found[0].hint
 
 
-@pytest.mark.nightly(but=[1, 3])
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
     ("step", "words"),
     [
@@ -336,7 +336,7 @@ def test_the_first_length_of_an_approach_that_the_arm_can_follow_is_taken(tmp_pa
 TABLE = "- {name: slab, static: true, box: {size: [0.3, 0.3, 0.2]}, pose: {xyz: [0.0, 0.0, 0.3]}}"
 
 
-@pytest.mark.nightly(but=["- pick: cube", "- move_to: up"])
+@pytest.mark.nightly(but=["- move_to: up"])
 @pytest.mark.parametrize(
     "step",
     ["- pick: cube", "- move_to: up", "- move_to: {pose: {xyz: [0.4, 0.1, 0.4], rpy: [3, 0, 0]}}"],
@@ -366,6 +366,7 @@ def test_the_ground_is_never_to_be_moved_away_from_what_lies_in_it(tmp_path, dep
     assert "'ground_plane' out of the way" not in text
 
 
+@pytest.mark.nightly(but=["True"])
 @pytest.mark.parametrize("is_static", [True, False])
 def test_only_what_is_not_static_is_to_be_moved_out_of_the_way(tmp_path, is_static):
     """Two walls leave no room for the fingers, whichever way they stand."""

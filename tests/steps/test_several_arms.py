@@ -163,6 +163,7 @@ steps:
 """
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(("arm", "outcome"), [("right", "passed"), ("left", "failed")])
 def test_the_name_of_an_arm_allows_its_links_and_its_hand(arm, outcome, recorded_run):
     run = read_run(recorded_run(ALLOWED.replace("ARM", arm), outcome) / "run").run

@@ -118,6 +118,7 @@ def test_a_process_that_leaves_without_a_result_is_an_error(server):
     assert outcome(server, jobs.leaves_without_a_result).outcome == "error"
 
 
+@pytest.mark.nightly
 def test_an_endless_native_call_ends_as_an_error_at_the_hard_cap(server):
     result = outcome(server, jobs.never_returns_from_native_code, hard_cap=3.0)
     assert result.outcome == "error"
@@ -126,6 +127,7 @@ def test_an_endless_native_call_ends_as_an_error_at_the_hard_cap(server):
     )
 
 
+@pytest.mark.nightly
 def test_the_hard_cap_does_not_count_waits_for_a_processor(server):
     code = "import os\nos.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\nwhile True: pass"
     others = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(4)]

@@ -234,7 +234,7 @@ ARM = """\
 """
 
 
-@pytest.mark.nightly(but=["a package"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("scenario", "appears", "text"),
     [

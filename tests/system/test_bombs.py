@@ -285,7 +285,7 @@ def _memory(name):
     return 1024 * int(re.search(rf"{name}:\s+(\d+) kB", status)[1])
 
 
-@pytest.mark.nightly(but=["YAML aliases", "GLB that states a billion corners"])
+@pytest.mark.nightly(but=["YAML aliases"])
 @pytest.mark.parametrize("name", BOMBS)
 def test_a_bomb_is_refused_in_bounded_memory(name, tmp_path):
     write, said = BOMBS[name]

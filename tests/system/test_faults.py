@@ -20,7 +20,7 @@ def receipts(saved):
     }
 
 
-@pytest.mark.nightly(but=["weak_grip"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["weak_grip", "stalled_joint", "bumped_box"])
 def test_a_bundled_fault_lands_and_its_scenario_passes(name, tmp_path):
     path = ROOT / f"scenarios/faults/{name}.scenario.yaml"

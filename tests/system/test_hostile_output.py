@@ -131,6 +131,7 @@ def test_a_terminal_gets_only_the_programs_own_sequences(hostile):
     harmless(STYLING.sub("", session.text).replace("\r\x1b[2K", ""))
 
 
+@pytest.mark.nightly
 @IN_DEFAULT_RUN
 def test_the_files_of_a_suite_hold_nothing_that_acts(hostile, tmp_path, monkeypatch):
     for name in ("b", "c"):

@@ -28,6 +28,7 @@ def outcomes(pytester):
     return run
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("arguments", ["but=['b']", "only=['a', 'c']", "but=[1]"])
 def test_the_default_run_has_what_the_nightly_run_leaves_out(outcomes, arguments):
     default, nightly = outcomes(arguments)

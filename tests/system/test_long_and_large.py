@@ -68,7 +68,7 @@ def test_a_suite_of_many_cases_is_flat_in_memory_handles_and_files(count, tmp_pa
     assert [each.name for each in (tmp_path / "reports").glob(".*")] == []
 
 
-@pytest.mark.nightly(but=["60"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("count", [60, 500])
 def test_a_world_of_many_objects_is_run_and_judged(count, tmp_path):
     rows = []

@@ -11,7 +11,7 @@ from tests.running import run_case
 MOTIONS = sorted((data_folder("scenarios") / "motions").glob("*.scenario.yaml"))
 
 
-@pytest.mark.nightly(but=["02_sequence", "04_path_constraints"])
+@pytest.mark.nightly(but=["02_sequence"])
 @pytest.mark.parametrize("path", MOTIONS, ids=lambda path: path.name.split(".")[0])
 def test_a_motion_scenario_passes(path, tmp_path):
     result = run_case(path, report_dir=tmp_path / "run", stills=False, page=False)

@@ -35,6 +35,7 @@ def test_after_it():
 """
 
 
+@pytest.mark.nightly
 def test_no_test_changes_what_the_next_one_finds(pytester, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     pytester.makepyfile(TESTS)
@@ -59,6 +60,7 @@ def test_after_it(): pass
 """
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(("at_import", "errors"), [(False, 1), (True, 0)])
 def test_a_plugin_that_a_test_leaves_registered_is_an_error(
     pytester, monkeypatch, at_import, errors

@@ -47,7 +47,7 @@ def first():
     return run_case(SCENARIO, stills=False)
 
 
-@pytest.mark.nightly(but=["NumPy and YAML"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("before", OTHER_CODE.values(), ids=OTHER_CODE)
 def test_a_run_has_the_same_digest_after_other_code(first, before):
     command = [sys.executable, "-c", before + RUN, str(SCENARIO)]

@@ -120,7 +120,7 @@ def outcome(folder, text):
     return run_case(file)
 
 
-@pytest.mark.nightly(but=["force"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", SCENES)
 def test_a_scene_that_public_threads_request_runs_and_is_judged(tmp_path, name):
     result = outcome(tmp_path, SCENES[name])

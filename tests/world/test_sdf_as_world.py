@@ -60,6 +60,7 @@ def cell(tmp_path):
     return path
 
 
+@pytest.mark.nightly
 def test_a_cylinder_is_picked_up_in_an_sdf_world_and_the_report_reports_what_is_left_out(cell):
     report = cell.parent / "report"
     result = run_case(cell, report_dir=report, stills=False, page=False)

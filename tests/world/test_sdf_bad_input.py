@@ -194,6 +194,7 @@ def test_a_link_out_of_the_folder_is_not_followed(tmp_path):
     assert "model_path" in problem.hint
 
 
+@pytest.mark.nightly
 def test_a_file_of_a_hundred_megabytes_is_refused_in_little_memory(tmp_path):
     path = write(tmp_path, "")
     with path.open("w", encoding="utf-8") as file:

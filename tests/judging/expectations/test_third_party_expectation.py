@@ -138,6 +138,7 @@ def test_it_is_on_the_reference_page(site):
     assert "| tcp height | m | at least `at_least` |" in section
 
 
+@pytest.mark.nightly
 def test_it_is_judged_reported_and_judged_again(site, scenario, tmp_path):
     failing = tmp_path / "failing.scenario.yaml"
     failing.write_text(FAILING, encoding="utf-8")

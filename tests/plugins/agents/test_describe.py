@@ -64,6 +64,7 @@ def test_sizes_poses_and_masses_are_those_of_the_file(scene, capsys):
     assert "pose" not in cup
 
 
+@pytest.mark.nightly(but=[0, 1])
 @pytest.mark.parametrize(
     ("name", "fits", "code"),
     [("cube", True, ""), ("brick", False, "GOAL_STATE_INVALID"), ("far", True, "NO_IK_SOLUTION")],
@@ -109,6 +110,7 @@ def test_the_robot_s_numbers_are_those_of_its_files(capsys):
     )  # the data sheet: 0.5 m to the wrist, then the hand
 
 
+@pytest.mark.nightly
 def test_the_longest_lesson_is_a_page_that_an_agent_reads(capsys):
     """Sixteen steps among eleven objects: what fits in a row stands in one."""
     assert main(["describe", "lessons/03_ur_sixteen_steps", "--json"]) == 0

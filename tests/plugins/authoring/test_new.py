@@ -143,7 +143,7 @@ def test_no_pick_is_tried_after_its_time(tmp_path, capsys, monkeypatch, seconds,
     assert "it was run once and passed" in said
 
 
-@pytest.mark.nightly(but=["1.23456789"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("start", ["1.23456789", "-1.23456789"])
 def test_goals_stay_inside_limits_that_rounding_would_exceed(capsys, folder, start):
     """The robot starts on a limit of many digits."""

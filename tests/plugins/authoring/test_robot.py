@@ -201,6 +201,7 @@ def test_a_model_that_differs_in_physics_would_be_found(folder):
     assert theirs == pytest.approx(6.0)
 
 
+@pytest.mark.nightly
 def test_an_arm_of_one_joint_is_looked_over(folder, capsys):
     one = f"""<robot name="one"><link name="a"/><link name="b">{INERTIAL}{SHAPE}</link>
     <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>{LIMIT}
@@ -336,6 +337,7 @@ def test_a_robot_that_is_never_free_is_reported(capsys):
     assert "inverse kinematics" not in page
 
 
+@pytest.mark.nightly
 def test_a_xacro_file_is_known_by_its_content_too(folder, capsys):
     root = '<robot name="three" xmlns:xacro="http://www.ros.org/wiki/xacro">'
     text = URDF.replace('<robot name="three">', f'{root}<xacro:arg name="high" default="2"/>')
@@ -382,6 +384,7 @@ OWN_MJCF = f"""<mujoco model="two_links"><compiler angle="radian"/><worldbody>
   {BODY.format("a", 0, BODY.format("b", 1, ""))}</worldbody></mujoco>"""
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("file", "text", "name"),
     [

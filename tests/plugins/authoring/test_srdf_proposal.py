@@ -22,6 +22,7 @@ def loaded(folder, **options):
 TWO = f"<robot name='two'><link name='body'/>{side('l', -0.4, 6)}{side('r', 0.4, 6)}</robot>"
 
 
+@pytest.mark.nightly(but=["two arms"])
 @pytest.mark.parametrize("text", [SIX, TWO], ids=["one arm", "two arms"])
 def test_arms_and_their_tcps_stay_as_they_were(text, folder, capsys):
     (folder / "robot.urdf").write_text(text, encoding="utf-8")

@@ -74,6 +74,7 @@ def test_a_turntable_is_tracked_too(tmp_path):
     assert result.outcome == "passed", (result.steps, result.verdicts)
 
 
+@pytest.mark.nightly
 def test_what_does_not_come_is_missed_by_so_much_at_a_time(tmp_path):
     stop = "  - {name: stop, static: true, in: simulation, box: {size: [1 cm, 0.1, 1 cm]},"
     result = run(tmp_path, more=stop + " pose: {xyz: [-0.15, 0.2, 0.025]}}")

@@ -122,7 +122,7 @@ def test_the_folder_of_a_robot_is_sent_however_it_is_named(tmp_path, monkeypatch
     assert files <= {*contents}
 
 
-@pytest.mark.nightly(but=["arm"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["./arm", "arm", "'../cases/arm'"])
 def test_a_node_gets_the_folder_of_a_robot(tmp_path, monkeypatch, name):
     file, contents = arm_in_a_folder(tmp_path, monkeypatch, name)

@@ -82,6 +82,7 @@ def test_a_failed_run_on_the_map_is_described_and_opens_with_a_click(page_file, 
     assert page.title() == "one run"
 
 
+@pytest.mark.nightly
 def test_a_passed_run_without_a_report_is_found_in_the_table(page_file, visit):
     page = visit(page_file).page
     said = page.inner_text("#map output")
@@ -101,6 +102,7 @@ def test_the_failure_rate_is_shown_for_each_cell(page_file, visit):
     place_of(page, "runs failed")
 
 
+@pytest.mark.nightly
 def test_the_map_fits_a_narrow_screen(page_file, visit):
     page = visit(page_file).page
     page.set_viewport_size({"width": 390, "height": 800})
@@ -275,7 +277,7 @@ def test_the_cause_of_failures_is_named_in_nearly_every_campaign(cause, count, t
     assert all(true in each or not each for each in found), "a wrong one is never named alone"
 
 
-@pytest.mark.nightly(but=["2-40"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(("failures", "count"), [(1, 40), (2, 40), (10, 40), (30, 200)])
 def test_failures_without_a_cause_are_explained_by_nothing(failures, count):
     found = [named(seed, count, any_of_them(failures)) for seed in range(200)]
@@ -431,6 +433,7 @@ def grasped(number, margin, unit):
     return SuiteCase(result, {"mass": number})
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize("slips", [1, 6])
 def test_failures_that_are_all_alike_have_a_panel_in_their_unit(tmp_path, visit, slips):
     cases = [grasped(i, -0.05, "N") for i in range(8)]

@@ -312,7 +312,7 @@ def test_the_workflows_have_no_mistake_that_actionlint_finds():
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.nightly(but=["gitlab-template", "action"])
+@pytest.mark.nightly(but=["action"])
 @pytest.mark.skipif(not is_installed("check-jsonschema"), reason="needs check-jsonschema")
 @pytest.mark.parametrize(
     ("schema", "file"),

@@ -228,6 +228,7 @@ def test_a_guarded_move_to_a_force_that_no_posture_can_press_is_a_located_error(
         assert "comply.scenario.yaml:8:75: in every posture that was tried, the" in str(result)
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -246,6 +247,7 @@ def test_what_no_torque_gives_where_the_arm_is_fails_and_check_predicts_it(tmp_p
     assert [(each.line, said in each.message) for each in predicted] == [(9, True)]
 
 
+@pytest.mark.nightly
 def test_a_force_that_an_arm_has_is_pressed_though_no_cycle_damps_it_to_2_cm_s(tmp_path):
     """100 N over 2 cm/s is more damping than 1 ms holds for 4 kg: the arm comes faster."""
     steps = """

@@ -67,6 +67,7 @@ def test_a_hole_stays_a_hole_down_to_a_tenth_of_a_millimetre(tmp_path, hole, peg
     assert result, str(result)
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("hole", "peg", "length"),
     [

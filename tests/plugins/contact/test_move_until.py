@@ -49,7 +49,7 @@ def test_a_touch_stops_the_arm_within_what_its_deceleration_allows(tmp_path, spe
     assert np.abs(np.diff(z)).max() < 1.05 * max(speed, 0.5) * 1e-3
 
 
-@pytest.mark.nightly(but=["20.0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("limit", [5.0, 20.0])
 def test_a_force_is_the_mean_of_the_recorded_contact_forces(tmp_path, limit):
     words = f"force: {limit}, max_distance: 5 cm, speed: 1 mm/s"

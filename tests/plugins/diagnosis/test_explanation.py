@@ -46,7 +46,7 @@ def stage(error, name):
     return {stage.stage: stage for stage in recorded_explanation(error.details).stages}[name]
 
 
-@pytest.mark.nightly(but=["open_manipulator-arm-goal2"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("make", "group", "goal"),
     [
@@ -116,6 +116,7 @@ def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
     assert cell.kinematics.solve(ARM, PoseGoal(TCP, pose), cell.state, 0)
 
 
+@pytest.mark.nightly(but=["xyz0-plan", "xyz1-check_goal"])
 @pytest.mark.parametrize("method", ["plan", "check_goal"])
 @pytest.mark.parametrize("xyz", [(0.9, 0, 0.3), (0.2, 0.6, 0.9)])
 def test_a_request_that_is_passed_by_its_name_is_explained(method, xyz):
@@ -160,6 +161,7 @@ def test_the_branches_of_a_ur_have_eight_names():
     assert over == "backwards, elbow up, wrist_2_joint < 0"
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("place", [(0.3, 0.0, 1.1), (0.2, 0.15, 1.15)])
 def test_branches_of_one_name_are_listed_with_their_joint_positions(place):
     cell = Cell(open_manipulator())
@@ -270,6 +272,7 @@ MOTIONS = {
 }
 
 
+@pytest.mark.nightly(but=["a line"])
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_every_motion_to_a_goal_explains_it_alike(motion):
     cell = Cell(ur("ur3e"))

@@ -204,6 +204,7 @@ def test_the_course_and_a_class_of_scenarios_need_no_extra(here, command):
     assert re.search("4 of 10 points|4/10  work", done.stdout), done.stdout
 
 
+@pytest.mark.nightly
 def test_a_node_runs_in_the_folder_of_the_student(here, capsys, monkeypatch):
     monkeypatch.setenv("PATH", str(Path(sys.executable).parent), prepend=os.pathsep)
     (here / "work").mkdir()

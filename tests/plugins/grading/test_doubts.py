@@ -281,6 +281,7 @@ def test_results_that_a_program_reports_of_its_steps_are_not_recorded(tmp_path):
     assert outcomes(grade(done, tmp_path, "fraction: 0.9")) == ["not observable"]
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("other", [0.0, -0.9])
 def test_distances_of_doubtful_joints_are_not_measured(other, tmp_path):
     """A forgotten node publishes each joint elsewhere, 4 ms after each message."""

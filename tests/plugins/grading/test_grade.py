@@ -196,6 +196,7 @@ EACH = {
 """One expectation of each kind."""
 
 
+@pytest.mark.nightly
 def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
     """Every kind in the page's table is judged, or not, as its row says."""
     page = (data_folder("scenarios").parent / "docs/guides/grading.md").read_text()
@@ -257,6 +258,7 @@ def test_a_lesson_loses_no_point_when_its_own_bag_is_graded(lesson, recorded_run
 GRIPPER_ALONE = data_folder("scenarios") / "lessons/04_gripper_alone.scenario.yaml"
 
 
+@pytest.mark.nightly
 def test_a_bag_of_another_robot_is_refused_for_a_gripper_alone(recording, tmp_path, capsys):
     """The gripper's joints are in no message; the error names the joints that were expected."""
     recording.messages = [

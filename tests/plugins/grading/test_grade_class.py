@@ -209,6 +209,7 @@ def test_a_picture_says_what_failed_in_its_step_and_not_that_the_motion_passed(g
         assert (graded / "students/low" / link).is_file()
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
     "steps",
     [
@@ -238,6 +239,7 @@ def test_a_mistake_of_a_file_is_said_once(graded):
     assert page(graded, "typo").count("no verb is called") == 1
 
 
+@pytest.mark.nightly(but=["390"])
 @pytest.mark.parametrize("width", [1440, 390])
 def test_no_cell_of_a_table_covers_another_one(graded, browser, width):
     covering = """[...document.querySelectorAll("td")].filter(td => {
@@ -308,6 +310,7 @@ SAFELY = {
 }
 
 
+@pytest.mark.nightly
 def test_what_holds_because_the_robot_did_not_move_earns_nothing(tmp_path):
     for folder in ("safe", "all"):
         (tmp_path / folder).mkdir()
@@ -351,6 +354,7 @@ def command_line(pid):
         return ""
 
 
+@pytest.mark.nightly(but=[1, 3, 4])
 @pytest.mark.parametrize(
     ("code", "limits", "words"),
     [

@@ -21,6 +21,7 @@ from tests.plugins.grading.recordings import (
 )
 
 
+@pytest.mark.nightly
 def test_joints_that_follow_another_are_where_that_one_puts_them(recording, stored, tmp_path):
     run = grade_bag(SCENARIO, recording.write(tmp_path / "student.mcap"), GAZEBO).run
     followers = [n for n, joint in enumerate(run.robot.movable_joints) if joint.is_mimic]
@@ -84,6 +85,7 @@ def test_frames_that_go_in_a_circle_are_reported_and_end(recording, tmp_path):
     assert status_of(grade, "displaced") in ("not observable", "not reached")
 
 
+@pytest.mark.nightly
 def test_two_programs_that_publish_the_same_joints_are_noticed(recording, stored, tmp_path):
     columns = {joint.name: index for index, joint in enumerate(stored.run.robot.movable_joints)}
     arm = {name: columns[name] for name in stored.run.robot.arm_joints}

@@ -43,6 +43,7 @@ def test_objects_stamped_by_another_clock_come_over_the_recorders(recording, tmp
     assert "and the joint states have different clocks" in note
 
 
+@pytest.mark.nightly
 def test_joint_states_without_stamps_are_where_the_recorder_got_them(recording, tmp_path):
     for message in recording.messages:
         message.stamp, message.logged = 0.0, WALL_CLOCK + (message.stamp - GAZEBO_STARTED)

@@ -100,6 +100,7 @@ def test_a_bag_whose_recorder_was_killed_and_other_files_say_what_is_wrong(tmp_p
         outcomes(tmp_path, cut)
 
 
+@pytest.mark.nightly
 def test_damage_of_any_byte_is_an_error_of_the_file_or_changes_a_message(tmp_path):
     whole = write(tmp_path / "arm.bag", compression=Writer.CompressionFormat.BZ2).read_bytes()
     rng, damaged = np.random.default_rng(0), tmp_path / "damaged.bag"

@@ -77,6 +77,7 @@ def ik(x, y, z):
 DELAYED = ("compute", "matrix", "sleep", "doze")
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("calls", "waiting_limit", "texts"),
     [

@@ -184,7 +184,7 @@ def test_pictures_and_numbers_go_into_the_report_folder(tmp_path):
     assert str(tmp_path / pictures[0]) in "\n".join(report_lines(report, tmp_path))
 
 
-@pytest.mark.nightly(but=["<lambda>-unobserved0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("function", "unobserved"),
     [

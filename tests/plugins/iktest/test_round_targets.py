@@ -63,7 +63,7 @@ def wrong_at_the_shoulder(x, y, z, pitch):
     ]
 
 
-@pytest.mark.nightly(but=[1])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("ik", "kind", "name", "examples"),
     [

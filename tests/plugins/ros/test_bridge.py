@@ -79,6 +79,7 @@ def test_invalid_goals_are_rejected_and_their_results_have_the_error_codes(tmp_p
     assert results[0].case.outcome == "passed"
 
 
+@pytest.mark.nightly
 def test_only_tolerances_of_the_controllers_file_end_a_motion_that_is_blocked(tmp_path):
     """The OpenMANIPULATOR-X's file has none: the lesson's node presses, and lifts again."""
     assert robot(model="open_manipulator_x").controller_tolerances is None
@@ -144,6 +145,7 @@ def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tm
     assert "this controller has no joint 'knee'" in note
 
 
+@pytest.mark.nightly
 def test_publishers_of_a_topic_hear_of_an_abort_and_its_reason(tmp_path):
     """UR's controllers have tolerances, and the arm cannot jump by half a turn in 10 ms."""
     said = []
@@ -160,6 +162,7 @@ def test_publishers_of_a_topic_hear_of_an_abort_and_its_reason(tmp_path):
     assert log[0].msg == said[0]
 
 
+@pytest.mark.nightly
 def test_the_path_of_the_tcp_is_published_as_by_the_course_s_trajectory_server(tmp_path):
     with bridge(scenario(tmp_path, HOLD)) as (node, _):
         paths = node.listen("/trajectory", "nav_msgs/msg/Path")
@@ -256,6 +259,7 @@ def test_twenty_recorded_sessions_replay_to_their_digests(tmp_path):
     assert len(set(digests.values())) > 10
 
 
+@pytest.mark.nightly
 def test_a_step_takes_the_time_of_a_position_interface_and_is_repeated_by_a_replay(tmp_path):
     """The course's keyboard node sends 0.05 rad with a time_from_start of 0."""
     folder = tmp_path / "run"

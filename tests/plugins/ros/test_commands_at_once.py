@@ -43,6 +43,7 @@ def positions_after(folder, commands):
     return read_run(folder / "run").run.signals.joint_positions
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     "commands",
     [

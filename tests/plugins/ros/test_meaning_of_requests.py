@@ -234,6 +234,7 @@ def duration(trajectory):
     return last.sec + last.nanosec * 1e-9
 
 
+@pytest.mark.nightly
 def test_objects_of_a_start_state_are_held_in_its_plan_alone(client):
     there = joint_goal({"shoulder_pan_joint": 0.3})
     assert client.move_to(there, plan_only=True).result.error_code.val == SUCCESS

@@ -212,6 +212,7 @@ BAD_REQUESTS = {
 }  # fmt: skip
 
 
+@pytest.mark.nightly
 def test_requests_that_mean_nothing_are_answered_with_moveits_codes(tmp_path):
     said = []
     with bridge(scenario(tmp_path, HOLD, robot=UR), say=said.append) as (node, results):

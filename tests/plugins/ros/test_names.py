@@ -74,6 +74,7 @@ def test_a_session_without_nodes_says_that_no_command_came(tmp_path):
     assert f"no command came: no other node was in ROS domain {domain}" in result.remarks
 
 
+@pytest.mark.nightly
 def test_wrong_types_and_qualities_are_noted_once_with_what_to_change(tmp_path):
     said, command = [], "/arm_controller/joint_trajectory"
     with bridge(scenario(tmp_path, HOLD), say=said.append) as (node, _):

@@ -78,6 +78,7 @@ def test_a_robot_whose_joints_have_a_prefix_is_moved_and_observed_by_names_witho
     assert results[0].commands == 2
 
 
+@pytest.mark.nightly
 def test_nothing_moves_before_the_user_agrees(tmp_path, plan, capsys, monkeypatch):
     answer = io.StringIO("no\n")
     answer.isatty = lambda: True

@@ -45,6 +45,7 @@ def recorded(plan):
     return read_run(file.parent).run
 
 
+@pytest.mark.nightly
 def test_two_arms_move_at_once_each_by_its_own_controller_and_grip(tmp_path):
     more = """\
   - {gripper: open, robot: right}
@@ -109,6 +110,7 @@ def test_an_arm_whose_controller_rejects_its_share_stops_the_other_one(tmp_path,
     assert "/right/arm_controller/follow_joint_trajectory rejected the trajectory" in said
 
 
+@pytest.mark.nightly
 def test_joints_of_which_nothing_is_published_are_named(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("harness.plugins.ros.remote.PATIENCE", 1.0)
     plan = cell(tmp_path, steps=AT_ONCE)
@@ -218,6 +220,7 @@ def test_what_stands_next_to_a_belt_is_a_goal(tmp_path):
         refuse_steps(prepare(scenario(tmp_path, steps, BELT)))
 
 
+@pytest.mark.nightly
 def test_objects_of_the_planning_scene_alone_are_not_refused(tmp_path):
     steps = f"- add_object: {BOX % ', in: planning'}\n- remove_object: box\n- wait: 0.1"
     plan = planned(tmp_path, scenario, steps, "expect: [{joints: {positions: {joint1: 0}}}]")

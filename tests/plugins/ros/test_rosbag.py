@@ -369,6 +369,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
+@pytest.mark.nightly
 def test_export_needs_neither_planner_nor_physics_and_writes_the_same_bag(folder, tmp_path):
     words = ["export", str(folder), "--bag", str(tmp_path / "bag"), "--urdf", str(tmp_path / "r")]
     done = subprocess.run(
@@ -389,6 +390,7 @@ def test_mesh_addresses_become_files_that_are_there_when_requested(folder, tmp_p
     assert all(Path(address).is_file() for address in addresses)
 
 
+@pytest.mark.nightly
 def test_frames_are_published_raw_too_when_requested(folder, tmp_path):
     place = tmp_path / "raw"
     assert main(["export", str(folder), "--bag", str(place), "--raw-images", "--rate", "20"]) == 0
@@ -417,6 +419,7 @@ def test_wrong_use_of_export_is_reported_and_writes_nothing(folder, tmp_path, ca
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.nightly
 def test_a_bag_makes_way_for_a_bag_when_forced_to(folder, tmp_path, capsys):
     words = ["export", str(folder), "--bag", str(tmp_path / "bag")]
     assert main([*words, "--storage", "sqlite3"]) == 0

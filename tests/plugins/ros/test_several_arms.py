@@ -132,6 +132,7 @@ def test_a_motion_of_both_that_one_arm_cannot_follow_stops_both(tmp_path):
     assert left[-1] == pytest.approx(left[-10], abs=2e-3)
 
 
+@pytest.mark.nightly
 def test_each_namespace_has_a_controller_manager(tmp_path):
     with bridge(cell(tmp_path)) as (node, _):
         kind, listed = f"{SRV}ListControllers", {}

@@ -199,6 +199,7 @@ def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
     assert (last["outcome"], len(last["digest"])) == ("passed", 64)
 
 
+@pytest.mark.nightly
 def test_a_digest_is_shown_of_the_text_and_the_run_on_the_page_alone(tmp_path):
     text = JUDGED.replace("wait: 60 s", "wait: 1 s")
     studio, digests = opened(tmp_path, text), []
@@ -345,6 +346,7 @@ def test_a_camera_shows_the_cell_as_it_is(tmp_path):
     assert "no camera 'other'" in reply(studio, "camera", name="other")["error"]
 
 
+@pytest.mark.nightly
 def test_expectations_that_observe_more_keep_the_steps_before_them(studio):
     reply(studio, "execute", verb="move_to", joints=[20, 0, 0, 0], unit="deg")
     links, positions = studio.cell.prepared.observed_links, studio.cell.joint_positions()
@@ -362,6 +364,7 @@ def moved_by_hand(studio, positions):
         studio._go_on(0.02)  # noqa: SLF001 - what the thread does between two pictures
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("positions", [{"joint1": 0.4}, {"joint2": -0.5, "joint4": 0.3}])
 def test_a_slider_then_execute_then_the_whole_run(studio, positions):
     moved_by_hand(studio, positions)
@@ -447,6 +450,7 @@ steps: []
 """
 
 
+@pytest.mark.nightly
 def test_a_cell_with_a_belt_a_door_and_a_wrist_sensor_is_shown_with_what_they_read(tmp_path):
     studio = opened(tmp_path, CELL)
 

@@ -106,6 +106,7 @@ def test_a_number_moves_the_joint_in_the_units_of_the_page(opened, served):
     opened.wait(f"Math.abs({MEASURED}) < 0.5")
 
 
+@pytest.mark.nightly
 def test_buttons_nudge_a_joint_by_a_degree(opened, served):
     opened.page.click('button[aria-label="joint2 more"]')
     opened.page.click('button[aria-label="joint2 more"]', modifiers=["Shift"])
@@ -263,6 +264,7 @@ def test_every_icon_of_the_toolbars_has_its_word_or_a_tooltip(opened, width, sho
     assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
 
 
+@pytest.mark.nightly
 def test_the_mark_of_an_executed_step_stays_with_its_line(browser, serve):
     """Also while nothing moves, and lines above it are added or removed."""
     with closing(new_context(browser)) as context:
@@ -279,6 +281,7 @@ def test_the_mark_of_an_executed_step_stays_with_its_line(browser, serve):
             assert page.page.locator(".ace_gutter-cell.done").count() == 1
 
 
+@pytest.mark.nightly
 def test_a_mistake_is_marked_at_its_place_with_advice(opened):
     good = opened.editor().replace("steps: []", "steps:\n  - gripper: open")
     opened.type_scenario(good.replace("gripper: open", "gripper: opne"))
@@ -305,6 +308,7 @@ def test_completion_offers_what_the_robot_has(opened):
     opened.wait("document.querySelectorAll('#problems button').length === 0")
 
 
+@pytest.mark.nightly
 def test_the_field_of_a_step_is_completed(opened):
     opened.page.click("#show-objects")
 
@@ -376,6 +380,7 @@ NUMBERS_CUT = """
 """
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("size", SIZES, ids=str)
 def test_plan_and_execute_stay_on_the_screen_and_no_name_is_cut(opened, size):
     page = opened.page
@@ -452,6 +457,7 @@ objects:
 LISTED = "[...document.querySelectorAll('#object-list .object')].map((each) => each.innerText)"
 
 
+@pytest.mark.nightly
 def test_the_list_of_objects_says_which_are_fixed(browser, serve):
     text = new_text("by hand", {"model": "open_manipulator_x"}, "empty")
     context = new_context(browser)
@@ -465,6 +471,7 @@ def test_the_list_of_objects_says_which_are_fixed(browser, serve):
     context.close()
 
 
+@pytest.mark.nightly
 def test_plots_count_their_time_from_now_and_contradict_no_clock(browser, serve):
     served = serve()
     context = new_context(browser)

@@ -88,6 +88,7 @@ def view(browser, serve):
     view.close()
 
 
+@pytest.mark.nightly
 def test_an_object_is_selected_with_a_click_and_dragged(view):
     start, end = view.at([0.2, -0.15, 0.03]), view.at([0.26, -0.12, 0.03])
     view.mouse.click(*start)

@@ -215,6 +215,7 @@ def test_the_database_follows_its_journal(tmp_path, capsys):
     assert names(query(capsys, folder)[1]) == ["sample9"]
 
 
+@pytest.mark.nightly
 def test_a_worse_campaign_is_shown_by_pairs(tmp_path, capsys):
     first = journal(tmp_path / "a", [entry(i, 0.01 + i / 1e4) for i in range(40)])
     worse = journal(
