@@ -37,6 +37,8 @@ sys.dont_write_bytecode = False
 use_one_thread()
 
 gc.disable()
+gc.set_threshold(100_000, 20, 20)
+"""The usual ones look at the objects of a test up to twenty times as often, for nothing."""
 
 
 def pytest_collection_finish():

@@ -39,7 +39,7 @@ from harness.ports.motions import (
 )
 from tests.planning.problem import OPTIONS, Problem
 
-FEW, MANY = 5, 100
+FEW, MANY = 3, 100
 ON_PATH, TURNED = 1e-4, np.radians(0.1)
 """How far a link may leave its line or circle [m], and be turned away [rad]."""
 REACHED = 1e-6  # [m, rad]
