@@ -183,8 +183,7 @@ def indented(message: str) -> str:
 
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-OF_A_PATH = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EROFS, *FULL)
-"""What is wrong with a path that a user gave, or with its disk, and never with the program."""
+OF_A_PATH = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EROFS, *FULL)  # or of its disk
 
 
 def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
@@ -218,8 +217,9 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
         if missing := missing_extra(error):
             complain(f"harness: {missing}")
             return USAGE_EXIT_CODE
-        if isinstance(error, OSError) and error.errno in OF_A_PATH:
-            complain(printable(f"harness: '{cropped(str(error.filename), 200)}': {error.strerror}"))
+        found = error.__context__ if type(error) is RuntimeError else error  # until Python 3.12
+        if isinstance(found, OSError) and found.errno in OF_A_PATH:
+            complain(printable(f"harness: '{cropped(str(found.filename), 200)}': {found.strerror}"))
             return USAGE_EXIT_CODE
         complain(error_text(error).rstrip())
         return EXIT_CODES["error"]

@@ -14,7 +14,7 @@ from typing import IO
 from harness.core.errors import HarnessError
 
 BUFFER = 2**20  # bytes of a file that are written at once
-
+WRITTEN_NOW = os.O_WRONLY | os.O_NONBLOCK  # an error for a pipe that nobody reads
 
 is_file, is_dir, path_exists = os.path.isfile, os.path.isdir, os.path.exists
 """What is there; nothing where a name is too long, for which `Path.is_file` raises OSError."""
@@ -71,11 +71,12 @@ def part_of(file: Path) -> Path:
 def replaced(file: Path) -> Generator[IO[bytes]]:
     """A new file, which gets its name when everything is written.
 
-    A link stays one, and its target is replaced. What is no file, such as a pipe or a device, is
-    written to.
+    A link stays one, and its target is replaced. What is no file, such as a device or a pipe that
+    somebody reads, is written to.
     """
     if file.exists() and not file.is_file():
-        with file.open("wb") as stream:
+        with open(file, "wb", opener=lambda name, _: os.open(name, WRITTEN_NOW)) as stream:
+            os.set_blocking(stream.fileno(), True)
             yield stream
         return
     file = file.resolve()

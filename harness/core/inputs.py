@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from glob import glob
 from pathlib import Path
 
-from harness.core.files import is_dir, path_exists
+from harness.core.files import is_dir, path_exists, read_at_most
 
 INSTALLED = ("site-packages", "dist-packages")  # installed packages: their versions count
 FOLDER = "folder"  # in place of a folder's hash: not the empty one of a missing place
@@ -32,7 +32,7 @@ def read_input(path: Path) -> bytes:
     for listener in _listeners:
         listener(key)
     try:
-        content = path.read_bytes()
+        content = read_at_most(path, sys.maxsize)
     except FileNotFoundError:
         _read[key] = ""
         raise
@@ -82,7 +82,7 @@ def content_hash(path: Path) -> str:
     if is_dir(path):
         return FOLDER
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return hashlib.sha256(read_at_most(path, sys.maxsize)).hexdigest()
     except OSError:
         names = sorted(glob(path.name, root_dir=path.parent))  # noqa: PTH207 - `**` is `*` here
         return hashlib.sha256("/".join(names).encode()).hexdigest() if names else ""

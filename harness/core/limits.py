@@ -10,6 +10,8 @@ bound it: meshes and JSON documents. Linux enforces it."""
 
 LONGEST_RUN = 600.0  # [s], simulated: a file cannot fill the machine's memory or its day
 
+CASE_PATTERN = 2000  # characters of `--case`; reading brackets takes the square of their number
+
 YAML_FILE = 2 * MB
 YAML_VALUES = 100_000  # aliases expanded, included files counted
 YAML_LEVELS = 50  # of lists and mappings inside each other

@@ -416,8 +416,8 @@ def _module_of_file(path: Path) -> ModuleType:
             return known
         raise ImportError(f"there is another module `{path.stem}`; rename the file")
     spec = importlib.util.spec_from_file_location(path.stem, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{path} is not a Python file")
+    if spec is None or spec.loader is None or (path.exists() and not path.is_file()):
+        raise ImportError(f"{path} is no regular Python file")
     module = sys.modules[path.stem] = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, cast
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
+from harness.core.errors import RobotError
 from harness.core.geometry import CollisionMode
 from harness.language.base import (
     Flag,
@@ -184,6 +185,15 @@ class RobotSpec(SpecModel):
                 " alone"
             )
         return self
+
+    @classmethod
+    def of_options(cls, words: Mapping[str, Any]) -> Self:
+        """The robot of a command's options; a RobotError for a word that is no name."""
+        try:
+            return cls.model_validate(words)
+        except ValidationError as error:
+            first = error.errors()[0]
+            raise RobotError(f"robot `{first['loc'][0]}`: {first['msg']}") from None
 
 
 ArmName = Annotated[Name, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]

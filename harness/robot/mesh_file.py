@@ -21,6 +21,7 @@ import numpy as np
 
 from harness.core.errors import MissingPackage, RobotError
 from harness.core.extras import absent_package, missing_extra
+from harness.core.files import open_regular
 from harness.core.geometry import Hull, Mesh, Shape
 from harness.core.inputs import read_input
 from harness.core.limits import MESH_FILE, READING_MEMORY
@@ -254,7 +255,7 @@ def metres_per_unit(geometry: Mesh) -> float:
         raise RobotError(f"{path.name} is not a {KINDS} file")
     try:
         size = path.stat().st_size
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             header = file.read(HEADER)
     except OSError as error:
         raise RobotError(f"{path.name} cannot be read: {error.strerror}") from error

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from harness.core.files import expanded, home_folder, is_dir, is_file
+from harness.core.files import expanded, home_folder, is_dir, is_file, open_regular
 from harness.core.inputs import is_there
 
 SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
@@ -259,7 +259,7 @@ def _is_package(folder: Path, name: str) -> bool:
     if not is_there(folder / MANIFEST):
         return False
     try:
-        with (folder / MANIFEST).open("rb") as manifest:
+        with open_regular(folder / MANIFEST) as manifest:
             found = NAME.search(manifest.read(LARGEST_MANIFEST))
     except OSError:
         return False

@@ -125,7 +125,7 @@ def load_source(source: RobotSource) -> RobotDescription:
                 raise RobotError(f"'{path}' says its robot itself: {OPTIONS[option]} is for others")
         scenario = load_scenario(path).scenario
         return load_scenario_robot(scenario, path.parent)
-    return load_robot(RobotSpec.model_validate(source.words()))
+    return load_robot(RobotSpec.of_options(source.words()))
 
 
 def positions_of(description: RobotDescription, state: str) -> FloatArray:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from harness.core.lazy import LazySequence
+from harness.core.limits import CASE_PATTERN
 from harness.core.options import values_of
 from harness.core.variation import MOST_SAMPLES
 from harness.session.run_request import RunOptions, RunRequest
@@ -163,6 +164,8 @@ def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteReque
     Raises:
         UsageError: `-k` cannot be read, or a file has too many cases.
     """
+    if any(len(pattern) > CASE_PATTERN for pattern in request.cases):
+        raise UsageError(f"--case: a pattern may have {CASE_PATTERN} characters at most")
     root = request.report_root
     files = [file for file, _ in headers]
     folders = [None] * len(files) if root is None else report_folders(files, root)

@@ -7,6 +7,7 @@ import pytest
 from harness.cli.arguments import Parser
 from harness.cli.options import add_options, read_options
 from harness.core.options import option
+from tests.running import exit_code
 
 
 @dataclass(frozen=True)
@@ -50,3 +51,24 @@ def test_a_wrong_value_ends_with_exit_code_2(words, capsys):
         order_of(*words)
     assert ended.value.code == 2
     assert f"'{words[1]}' is not" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("pattern", ["[" * 10_000, "[a" * 5000, "*[" * 5000])
+def test_a_pattern_of_cases_is_bounded(pattern, capsys, tmp_path):
+    """Reading brackets takes the square of their number."""
+    (tmp_path / "a.scenario.yaml").write_text("scenario: A\nrobot: ur3e\nsteps: [{wait: 5 ms}]\n")
+    words = ["run", tmp_path / "a.scenario.yaml", "--no-report", "--case", pattern]
+    assert exit_code(*words) == 2
+    assert (
+        capsys.readouterr().err == "harness: --case: a pattern may have 2000 characters at most\n"
+    )
+
+
+@pytest.mark.parametrize("option", ["--group", "--tcp-link", "--args"])
+@pytest.mark.parametrize("name", ["a" * 101, "\udc80"])
+def test_a_word_that_is_no_name_of_a_robot_is_wrong_usage(option, name, capsys):
+    value = f"{name}=1" if option == "--args" else name
+    assert exit_code("robot", "check", "ur3e", f"{option}={value}") == 2
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    assert said.startswith("harness: robot `")

@@ -7,6 +7,7 @@ import threading
 
 import pytest
 
+from tests.commands import harness
 from tests.running import exit_code
 
 SCENARIO = """\
@@ -103,3 +104,62 @@ def test_a_still_that_links_out_of_the_run_is_not_shown(folder, capsys):
     still.symlink_to(folder / "private.jpg")
     assert exit_code("view", "--rebuild", "--no-open", "run") == 2
     assert "leads out of the run's folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["check", "a.scenario.yaml"], ["run", "a.scenario.yaml", "--no-report"], ["schema"]],
+)
+def test_a_module_that_is_a_pipe_without_a_writer_is_not_waited_for(words, folder):
+    os.mkfifo(folder / "p.py")
+    ended = harness(*words, "--plugin", "p.py", cwd=folder)
+    assert ended.returncode == 2
+    assert "p.py is no regular Python file" in ended.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [["schema", "--write", "out"], ["export", "run", "--force", "--urdf", "out"]]
+)
+def test_a_pipe_that_nobody_reads_is_not_written_to(words, folder):
+    os.mkfifo(folder / "out")
+    ended = harness(*words, cwd=folder)
+    assert ended.returncode == 2
+    assert "out" in ended.stderr
+    assert "Traceback" not in ended.stderr
+
+
+def test_a_pipe_that_somebody_reads_is_written_to(folder):
+    os.mkfifo(folder / "out")
+    reader = os.open(folder / "out", os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        assert harness("export", "run", "--force", "--urdf", "out", cwd=folder).returncode == 0
+        assert os.read(reader, 5) == b"<?xml"
+    finally:
+        os.close(reader)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["import", "sdf", "loop", "-o", "w.yaml"],
+        ["import", "mjcf", "w.xml", "-o", "loop", "--force"],
+        ["new", "--project", "loop"],
+    ],
+)
+def test_a_loop_of_links_is_named(words, folder, capsys):
+    (folder / "loop").symlink_to("loop")
+    (folder / "w.xml").write_text(
+        "<mujoco><worldbody><geom type='box' size='1 1 1'/></worldbody></mujoco>"
+    )
+    assert exit_code(*words) == 2
+    said = capsys.readouterr().err
+    assert "loop" in said
+    assert "Traceback" not in said
+
+
+def test_the_server_of_assistants_does_not_wait_for_a_pipe(tmp_path):
+    from harness.plugins.mcp.workspace import RefusedError, Workspace
+
+    os.mkfifo(tmp_path / "a.yaml")
+    with pytest.raises(RefusedError, match="not a regular file"):
+        Workspace(tmp_path).read("a.yaml")

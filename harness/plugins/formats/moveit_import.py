@@ -59,7 +59,7 @@ def import_moveit(
         RobotError: The robot cannot be used.
     """
     words = robot.words()
-    description = load_robot(RobotSpec.model_validate(words))
+    description = load_robot(RobotSpec.of_options(words))
     given = [Path(each) for each in robot.packages]
     found, problems = Imported(), list[Problem]()
     all_scenes: dict[Path, MoveItScene] = {}

@@ -7,12 +7,13 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import TextIOWrapper
 from pathlib import Path
 from threading import BoundedSemaphore
 from typing import Any
 
 from harness.core.errors import HarnessError
-from harness.core.files import replaced
+from harness.core.files import open_regular, replaced
 from harness.core.limits import MCP_COMMANDS, MCP_TEXT
 from harness.suite.discovery import bundled_scenarios
 
@@ -73,7 +74,7 @@ class Workspace:
         if path.suffix not in YAML:
             raise RefusedError(f"'{name}': only .yaml files are read")
         try:
-            with path.open(encoding="utf-8") as stream:
+            with TextIOWrapper(open_regular(path), encoding="utf-8") as stream:
                 return shortened(stream.read(MCP_TEXT + 1))
         except (OSError, UnicodeDecodeError) as error:
             raise RefusedError(f"cannot read '{name}': {error}") from error

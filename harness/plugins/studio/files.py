@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.core.errors import HarnessError, SpecError
-from harness.core.files import expanded, replaced
+from harness.core.files import expanded, read_at_most, replaced
+from harness.core.limits import STUDIO_MESSAGE
 from harness.language.files.source import Located, walk
 from harness.language.reading.load import WORLD_SUFFIXES, LoadedScenario, load_world
 
@@ -88,7 +89,7 @@ class StudioFiles:
     def restored(self) -> str | None:
         """The text that a crash left; None where there is none."""
         try:
-            return self.unsaved.read_text(encoding="utf-8")
+            return read_at_most(self.unsaved, STUDIO_MESSAGE).decode()
         except (OSError, UnicodeDecodeError):
             return None
 

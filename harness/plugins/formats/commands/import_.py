@@ -111,7 +111,7 @@ def _robot(arguments: argparse.Namespace) -> int:
     robot = source_of(argparse.Namespace(**{**vars(arguments), "srdf": arguments.file}))
     if robot.kind not in KINDS.values():
         raise UsageError(f"--robot is a URDF, xacro or MJCF file, not '{arguments.robot}'")
-    found = robot_folder(RobotSpec.model_validate(robot.words()), Path(), folder)
+    found = robot_folder(RobotSpec.of_options(robot.words()), Path(), folder)
     contents = {folder / name: text.encode() for name, text in found.files.items()}
     _write(contents, is_forced=arguments.force)
     for note in found.notes:

@@ -38,7 +38,7 @@ def load_chain(robot: str, *, gripper: str | None = None, group: str = "", link:
     """
     suffix = Path(robot).suffix.lower()
     key = {".urdf": "urdf", ".xacro": "xacro"}.get(suffix, "model")
-    spec = RobotSpec.model_validate({key: robot, "gripper": gripper})
+    spec = RobotSpec.of_options({key: robot, "gripper": gripper})
     return Chain.of(load_robot(spec), group, link)
 
 

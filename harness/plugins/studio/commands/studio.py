@@ -121,11 +121,12 @@ def refuse_missing_extra() -> None:
 
 def start_of(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
     """The file that the studio saves to, the text with which it begins, and the time to go to."""
+    from harness.language.files.yaml_file import read_text
     from harness.recording.stored_run import RESOLVED, RUN
 
     word: str = arguments.target
     if (Path(word) / RUN).is_file():
-        text = (Path(word) / RESOLVED).read_text(encoding="utf-8")
+        text = read_text(Path(word) / RESOLVED)
         return Path(word) / f"continued{SUFFIX}", text, arguments.at or 0.0
     if arguments.at is not None:
         raise UsageError(f"--at is for the folder of a run, which '{word}' is not")
@@ -133,6 +134,7 @@ def start_of(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
 
 
 def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
+    from harness.language.files.yaml_file import read_text
     from harness.robot.load import robot_names
     from harness.robot.robot_source import RobotSource
 
@@ -152,7 +154,7 @@ def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
                 f"'{path}' exists and has a robot and a world of its own: rename or delete it, or"
                 " leave --gripper, --world and --base out to go on with it"
             )
-        return path, path.read_text(encoding="utf-8")
+        return path, read_text(path)
     given: dict[str, Plain] = {key: value for key, value in robot.items() if value}
     if arguments.base is not None:
         given["base"] = {"xyz": arguments.base}
