@@ -151,7 +151,7 @@ def _serve_at(place, folder, environment, paths, modules, _notify):
     _serve(control, environment, modules)
 
 
-class _ForkedServer(WarmServer):
+class ForkedServer(WarmServer):
     """The server of a command: forked from this process, which has its modules, not started."""
 
     def open(self):
@@ -192,7 +192,7 @@ def _serve(control, environment, modules):
 def _command(words, cwd, environment, out, err, _notify):
     from harness.cli.main import entry
 
-    warm.WarmServer = _ForkedServer
+    warm.WarmServer = ForkedServer
     for file, number in ((out, 1), (err, 2)):
         with file.open("wb") as stream:
             os.dup2(stream.fileno(), number)

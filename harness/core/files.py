@@ -14,7 +14,7 @@ from typing import IO
 from harness.core.errors import HarnessError
 
 BUFFER = 2**20  # bytes of a file that are written at once
-WRITTEN_NOW = os.O_WRONLY | os.O_NONBLOCK  # an error for a pipe that nobody reads
+WRITTEN_NOW = os.O_WRONLY | os.O_NONBLOCK  # an error for a pipe without a reader
 
 is_file, is_dir, path_exists = os.path.isfile, os.path.isdir, os.path.exists
 """What is there; nothing where a name is too long, for which `Path.is_file` raises OSError."""

@@ -62,6 +62,18 @@ def count_scenarios(ends: Mapping[str, int]) -> None:
     change(edit)
 
 
+def count_attacks(name: str, tries: int, seconds: float, findings: int) -> None:
+    """Add the counts of an attack on commands; a finding counts each time it is met."""
+
+    def edit(known: dict[str, Any]) -> None:
+        total = known.setdefault("attacks", {}).setdefault(name, {})
+        for key, value in (("tries", tries), ("seconds", round(seconds)), ("findings", findings)):
+            total[key] = total.get(key, 0) + value
+        total["date"] = datetime.now(UTC).date().isoformat()
+
+    change(edit)
+
+
 def count_tests(path: str, ends: Mapping[str, int], *, is_exhaustive: bool) -> None:
     """Set how many tests of a promise's file or folder ended how."""
     day = datetime.now(UTC).date().isoformat()

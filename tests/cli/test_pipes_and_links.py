@@ -120,7 +120,7 @@ def test_a_module_that_is_a_pipe_without_a_writer_is_not_waited_for(words, folde
 @pytest.mark.parametrize(
     "words", [["schema", "--write", "out"], ["export", "run", "--force", "--urdf", "out"]]
 )
-def test_a_pipe_that_nobody_reads_is_not_written_to(words, folder):
+def test_a_pipe_without_a_reader_is_not_written_to(words, folder):
     os.mkfifo(folder / "out")
     ended = harness(*words, cwd=folder)
     assert ended.returncode == 2
@@ -128,7 +128,7 @@ def test_a_pipe_that_nobody_reads_is_not_written_to(words, folder):
     assert "Traceback" not in ended.stderr
 
 
-def test_a_pipe_that_somebody_reads_is_written_to(folder):
+def test_a_pipe_with_a_reader_is_written_to(folder):
     os.mkfifo(folder / "out")
     reader = os.open(folder / "out", os.O_RDONLY | os.O_NONBLOCK)
     try:

@@ -1,0 +1,1 @@
+"""Attacks on commands: odd paths, signals, limits, clocks, full disks, one folder, floods."""
