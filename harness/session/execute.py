@@ -79,7 +79,7 @@ class _Runner:
                 end_index=cell.simulator.sample_count,
                 trajectory=notes.trajectory,
                 planner=notes.planner,
-                explanation=notes.explanation + _details(failure, cell),
+                explanation=notes.explanation + _details(step, failure, cell),
                 result=notes.result,
             )
             self.on_step(step, self.records[place])
@@ -195,12 +195,13 @@ def _own(failure: Failure | None) -> StepFailed | None:
     return failure
 
 
-def _details(failure: StepFailed | None, cell: Cell) -> Details:
+def _details(step: ProgramStep, failure: StepFailed | None, cell: Cell) -> Details:
     """A failure's details, with what to do about it where that is known."""
     if failure is None:
         return Details()
     explainers = registry("explainer").values()
-    text = next((said for each in explainers if (said := each().advice(failure, cell))), "")
+    with cell.inside(step):
+        text = next((said for each in explainers if (said := each().advice(failure, cell))), "")
     return failure.details + Details.of(Explanation(advice=text) if text else None)
 
 

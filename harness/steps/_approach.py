@@ -13,14 +13,11 @@ from harness.cell.goals import TcpGoal, group_of, task_space_of
 from harness.cell.grasp_choice import ChosenApproach, with_arm
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
-from harness.core.details import Details
-from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.base import PositiveLength, SpecModel
 from harness.language.poses import Direction, Pose
 from harness.ports.goals import PoseGoal
-from harness.recording.explanation import ApproachFailure, Explanation, NearestState
 from harness.steps.lin import Lin
 from harness.steps.move_relative import MoveRelative, check_lengths
 from harness.steps.move_to import MoveTo
@@ -119,38 +116,6 @@ def world_pose_spec(pose: SE3) -> Pose:
     x, y, z = (float(value) for value in pose.translation)
     qw, qx, qy, qz = (float(value) for value in pose.quat_wxyz)
     return Pose(xyz=(x, y, z), quat_wxyz=(qw, qx, qy, qz))
-
-
-def with_advice(failure: PlanningFailed, advice: str, more: str = "") -> PlanningFailed:
-    """The failure with advice that can be followed in the step that it is reported for.
-
-    Args:
-        advice: What to do; empty where nothing is known.
-        more: What is added to the message.
-    """
-    added = Details.of(Explanation(advice=advice) if advice else None)
-    return PlanningFailed(failure.code, failure.message + more, *failure.details, *added)
-
-
-def start_advice(failure: PlanningFailed, end: str) -> str:
-    """What to do where the end of an approach can be reached and its start cannot, else nothing.
-
-    Args:
-        end: The end in words: `the grasp`.
-    """
-    approach = failure.details.find(ApproachFailure)
-    if approach is None or not approach.is_start_of_approach:
-        return ""
-    return (
-        f"{end} can be reached, the start of its approach cannot: give `approach` a shorter"
-        " `distance`, or another `direction`"
-    )
-
-
-def nearest_state(failure: PlanningFailed) -> NearestState | None:
-    """The state that the planner explains a failure by."""
-    explained = (part.nearest for part in failure.details if isinstance(part, Explanation))
-    return next((nearest for nearest in explained if nearest is not None), None)
 
 
 def millimetres(metres: float) -> str:

@@ -32,7 +32,6 @@ from harness.cell.grasping import (
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.cell.step import Step
-from harness.core.amounts import point_text
 from harness.core.details import Detail
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
@@ -45,13 +44,9 @@ from harness.steps._approach import (
     approach_steps,
     as_reached,
     check_travel,
-    millimetres,
-    nearest_state,
     relative_step,
-    start_advice,
     travel_lengths,
     turning_axis,
-    with_advice,
     world_pose_spec,
 )
 from harness.steps._tracker import check_track, tracker
@@ -223,8 +218,8 @@ def chosen_approach(step: Pick, lift: MoveRelative, cell: Cell) -> ChosenApproac
     try:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
-        advice = pick_advice(step, failure, len(goals), cell)
-        raise with_advice(failure, advice, approach_words(failure)) from failure
+        message = failure.message + approach_words(failure)
+        raise PlanningFailed(failure.code, message, *failure.details) from failure
     cell.report(GraspChoice(len(goals), chosen.approach.number + 1))
     return chosen
 
@@ -238,76 +233,6 @@ def _can_lift(lift: MoveRelative, state: FloatArray, cell: Cell) -> bool:
     except PlanningFailed:
         return False
     return True
-
-
-def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
-    """What to do in the keys of a pick."""
-    if held := cell.held_objects:
-        return f"the gripper still holds '{held[-1]}': `place` or `release` it before this"
-    if failure.code.startswith("START_STATE"):
-        return ""  # the planner's advice is about the start
-    if failure.code == "GOAL_IN_COLLISION":
-        return _collision_advice(step, failure, grasps, cell)
-    if advice := start_advice(failure, "the grasp"):
-        return advice
-    if failure.code == "GOAL_CONSTRAINTS_VIOLATED":
-        joints = len(cell.description.groups[group_of(cell, step.group)].joint_names)
-        return (
-            f"an arm of {joints} joints cannot reach every rotation at a point: leave the rotation"
-            " out of `grasp_pose` and the arm finds its own; `pitch` states how far the gripper"
-            " points down"
-        )
-    nearest = nearest_state(failure)
-    moved, away = "", (nearest.position_error if nearest else None) or 0.0
-    if nearest is not None and nearest.pose is not None and away >= 1e-3:
-        there = point_text(np.round(nearest.pose[:3], 3))
-        moved = (
-            f"the nearest point that the gripper reaches is {there}, {millimetres(away)}"
-            f" from the grasp: bring '{step.object}' or the robot's `base` nearer by that much"
-        )
-    if step.grasp_pose is not None and step.grasp_pose.has_rotation:
-        freer = "leave the rotation out of `grasp_pose`, so that every grasp from above is tried"
-    elif step.pitch is not None:
-        freer = "leave out `pitch`, so that every pitch is tried"
-    else:
-        tried = f"{grasps} grasps were tried" if grasps > 1 else "one grasp was tried"
-        freer = f"{tried}; state another one with `grasp_pose`"
-    return "; or ".join(part for part in (moved, freer) if part)
-
-
-def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
-    nearest = nearest_state(failure)
-    if nearest is None or not nearest.touches or nearest.touches[0].distance >= 0:
-        return ""  # the padding is in the way, and the planner's advice says so
-    deepest = nearest.touches[0]
-    pair, depth = deepest.pair, millimetres(-deepest.distance)
-    blockers = [name for name in pair if name in cell.presence and name != step.object]
-    can_move = bool(blockers) and not cell.presence[blockers[0]].obj.is_static
-    tried = f"none of {grasps} grasps is free" if grasps > 1 else "the grasp is not free"
-    if step.object in pair and not blockers and _moves_with_object(step):
-        link = next(name for name in pair if name != step.object)
-        return (
-            f"{tried}: it moves with '{step.object}', so moving that does not help; state another"
-            f" one with `grasp_pose`, which keeps '{link}' {depth} farther out, or give"
-            f" '{step.object}' a shape that fits between the fingers"
-        )
-    moved = f"move '{step.object}' to where the gripper has {depth} more room"
-    if blockers:
-        moved = f"move '{step.object}' {depth} farther from '{blockers[0]}'"
-    if nearest.nearest_free is not None:
-        shift = nearest.nearest_free.shift
-        axis = max(range(3), key=lambda index: abs(shift[index]))
-        sign = "+" if shift[axis] > 0 else "-"
-        far, along = millimetres(abs(shift[axis])), f"{sign}{'xyz'[axis]}"
-        moved = f"move '{step.object}' {far} along {along} of the world"
-    if can_move:
-        moved += f", or '{blockers[0]}' out of the way"
-    return f"{tried}: {moved}; or state another grasp with `grasp_pose`"
-
-
-def _moves_with_object(step: Pick) -> bool:
-    """Whether the grasp stays where it is on the object when that is moved."""
-    return step.grasp_pose is None or step.grasp_pose.frame == step.object
 
 
 def approach_words(failure: PlanningFailed) -> str:

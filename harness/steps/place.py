@@ -20,7 +20,7 @@ from harness.cell.scope import At
 from harness.cell.step import Step
 from harness.cell.supports import places_on
 from harness.core.details import Detail
-from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.errors import StepFailed
 from harness.core.geometry import Plane
 from harness.core.pose_arrays import rotations_about
 from harness.core.spatial import SE3, pitch_of
@@ -40,12 +40,9 @@ from harness.steps._approach import (
     as_reached,
     check_travel,
     millimetres,
-    nearest_state,
     relative_step,
-    start_advice,
     travel_lengths,
     turning_axis,
-    with_advice,
     world_pose_spec,
 )
 from harness.steps._tracker import check_track, tracker
@@ -153,14 +150,14 @@ class Place(Step):
         if not self.track:
             cell.run_parts(self.parts(cell))
             return
-        name = self._held_object(cell)
+        name = self.object_placed(cell)
         up = Direction(xyz=(0, 0, 1))
         back = relative_step(self.retreat or DEFAULT_RETREAT, up, self.group)
         distance = back.distance or back.max_distance or 0.0
-        targets, group = _targets(name, self, cell), group_of(cell, self.group)
+        targets, group = placings(name, self, cell), group_of(cell, self.group)
         tracker().place(name, targets, distance, group, cell)
 
-    def _held_object(self, cell: Cell) -> str:
+    def object_placed(self, cell: Cell) -> str:
         """The name of the object that the step places."""
         held = cell.held_objects
         name = self.object or (held[-1] if held else None)
@@ -176,7 +173,7 @@ class Place(Step):
         return name
 
     def parts(self, cell: Cell) -> Generator[ProgramStep]:
-        name, backwards = self._held_object(cell), _retreat_direction(cell)
+        name, backwards = self.object_placed(cell), _retreat_direction(cell)
         yield from _lowering(name, self, cell)
         yield cell.child("release", Release(object=name), f"release {name}")
         retreat = relative_step(self.retreat or DEFAULT_RETREAT, backwards, self.group)
@@ -205,8 +202,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     along = -UP
     if step.approach is not None and step.approach.direction is not None:
         along = cell.world_direction(step.approach.direction)
-    targets = _targets(name, step, cell)
-    stated = SE3(targets[0].rotation, targets[0].translation - PUT_DOWN_GAP * UP)
+    targets = placings(name, step, cell)
     goals = [_tcp_goal(name, target, step, cell) for target in targets]
     approaches = [
         Approach(
@@ -225,11 +221,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
         replace(cell.current.options, padding=0.0),
         may_end=lambda state: _can_open(state, refused, cell),
     )
-    try:
-        chosen = choose_approach(approaches, search, cell)
-    except PlanningFailed as failure:
-        advice = place_advice(name, stated, failure, cell)
-        raise with_advice(failure, advice) from failure
+    chosen = choose_approach(approaches, search, cell)
     least = max(refused, key=lambda touch: touch.distance, default=None)
     if least is not None and least.distance < -DEEPEST_OPENING:
         raise _no_room(name, least)
@@ -239,7 +231,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     return [reach, replace(lower, options=replace(lower.options, padding=0.0))]
 
 
-def _targets(name: str, step: Place, cell: Cell) -> list[SE3]:
+def placings(name: str, step: Place, cell: Cell) -> list[SE3]:
     """T_world_object of each way to put an object down, a little above its support."""
     stated = places_on(name, step.on, cell) if step.on else [cell.world_pose(_pose_of(step))]
     return [
@@ -272,39 +264,6 @@ def _no_room(name: str, touch: Touch) -> StepFailed:
             " on that side of the gripper"
         ),
     )
-
-
-def place_advice(name: str, stated: SE3, failure: PlanningFailed, cell: Cell) -> str:
-    """What to do in the keys of a place, at `stated`."""
-    if failure.code.startswith("START_STATE"):
-        return ""  # the planner's advice is about the start
-    if advice := start_advice(failure, "the place"):
-        return advice
-    nearest = nearest_state(failure)
-    if failure.code == "GOAL_IN_COLLISION":
-        if nearest is None or nearest.nearest_free is None:
-            return ""
-        shift = np.array(nearest.nearest_free.shift)
-        return (
-            f"move '{name}' to where it is free: `pose: {{{_xyz(stated.translation + shift)}}}`, or"
-            " move what is in the way"
-        )
-    if nearest is None:
-        return ""
-    state = np.array([nearest.joint_positions[joint] for joint in cell.description.joint_names])
-    pose = cell.scene.object_pose(name, state)
-    point = pose.translation - PUT_DOWN_GAP * UP
-    away = float(np.linalg.norm(point - stated.translation))
-    return (
-        f"the nearest place that the arm can bring '{name}' to, held as it is, is `pose:"
-        f" {{{_xyz(point)}}}`, {millimetres(away)} away; or pick it with another `pitch` or"
-        " `grasp_pose`"
-    )
-
-
-def _xyz(point: FloatArray) -> str:
-    x, y, z = np.round(point, 3) + 0.0
-    return f"xyz: [{x:g}, {y:g}, {z:g}]"
 
 
 def _pose_of(step: Place) -> Pose:

@@ -1,4 +1,4 @@
-"""What to do about a failure that the planner has not explained."""
+"""What to do about a failed step, in the keys of the step."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from harness.cell.cell import Cell
 from harness.cell.grasping import least_gap
 from harness.core.errors import StepFailed
 from harness.core.registry import OWN_PACKAGE, registry
+from harness.plugins.diagnosis.approach_advice import approach_advice
 from harness.recording.execution_failures import ControlFailure, GraspFailure, UnrestFailure
-from harness.recording.explanation import Explanation
+from harness.recording.explanation import ApproachFailure, Explanation
 
 
 def advice(failure: StepFailed, cell: Cell) -> str:
@@ -19,6 +20,8 @@ def advice(failure: StepFailed, cell: Cell) -> str:
     if (control is not None or is_grasp) and cell.faults:
         injected = ", ".join(f"{name} (line {line})" for name, line in cell.faults.items())
         return f"look first at the faults that were injected: {injected}"
+    if failure.details.find(ApproachFailure) is not None:
+        return approach_advice(failure, cell)
     if failure.details.find(Explanation) is not None:
         return ""
     if is_grasp:
