@@ -19,7 +19,6 @@ from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, Finding, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
-from harness.recording.step_results import AllowedCollisions
 
 LOST = 0.003  # an object that drifted further in the hand is not where the planner carries it [m]
 GRIP_GAP = 0.05  # [s] from the last touch of fingers to the end of a hold, at most
@@ -39,7 +38,7 @@ def plan_against_physics(
     """
     held = [found for record in run.attachments if (found := held_finding(run, record)) is not None]
     near = _clearances(run.steps, signals, planned, distances)
-    return (*held, *_tracking(run), *near, *_allowed_contacts(run))
+    return (*held, *near)
 
 
 def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
@@ -114,29 +113,6 @@ def _is_physical(run: Run, name: str) -> bool:
     return any(record.name == name and record.in_simulation for record in run.objects)
 
 
-def _tracking(run: Run) -> tuple[Finding, ...]:
-    """The joint that was furthest from its command."""
-    signals = run.signals
-    errors = np.abs(signals.joint_positions - signals.joint_commands)
-    errors = np.where(np.isfinite(errors), errors, 0.0)
-    hand = gripper_joints(run)
-    for column, joint in enumerate(run.robot.movable_joints):
-        if joint.name in hand:
-            errors[:, column] = 0.0  # a gripper that presses lags its command
-    row, column = (int(place) for place in np.unravel_index(int(np.argmax(errors)), errors.shape))
-    worst = float(errors[row, column])
-    joint = run.robot.movable_joints[column]
-    unit = joint.position_unit
-    return (
-        Finding(
-            "tracking",
-            f"{joint.name} was furthest from its command: {amount(worst, unit)}",
-            float(signals.times[row]),
-            values={"joint": joint.name, "error": worst, "unit": unit},
-        ),
-    )
-
-
 def _clearances(
     steps: Sequence[StepRecord], signals: Signals, planned: Signals, distances: Distances
 ) -> tuple[Finding, ...]:
@@ -188,46 +164,3 @@ def _nearest(step: StepRecord, near: Mapping[Pair, FloatArray]) -> tuple[int, Pa
         if best is None or float(part[row]) < best[0]:
             best = float(part[row]), step.start_index + row, pair
     return None if best is None else (best[1], best[2])
-
-
-def _allowed_contacts(run: Run) -> tuple[Finding, ...]:
-    """Pairs that the SRDF or `allow_collisions` lets touch, and that really did."""
-    times, period = run.signals.times, run.timestep
-    found: list[Finding] = []
-    for pair, force in run.signals.contact_forces.items():
-        for where, touching in _allowances(run, pair):
-            rows = np.flatnonzero((force > 0) & touching)
-            if not len(rows):
-                continue
-            first, seconds = float(times[rows[0]]), len(rows) * period
-            peak = float(force[rows].max())
-            found.append(
-                Finding(
-                    "allowed_contact",
-                    f"{pair[0]} and {pair[1]} touched, as {where} allows: first at {first:.2f} s,"
-                    f" for {seconds:.2f} s, at most {amount(peak, 'N')}",
-                    first,
-                    values={"pair": list(pair), "seconds": seconds, "peak_force": peak},
-                )
-            )
-    return tuple(found)
-
-
-def _allowances(run: Run, pair: Pair) -> list[tuple[str, np.ndarray]]:
-    times = run.signals.times
-    either = {pair, (pair[1], pair[0])}
-    allowances: list[tuple[str, np.ndarray]] = []
-    if either & set(run.allowed_contacts):
-        allowances.append(("the SRDF", np.ones(len(times), dtype=bool)))
-    links = set(run.robot.link_names)
-    names = [{name, "robot"} if name in links else {name} for name in pair]
-    for step in run.steps:
-        allowed = step.result.find(AllowedCollisions)
-        for first, second in allowed.allowed_collisions if allowed else ():
-            both = (first in names[0] and second in names[1]) or (
-                first in names[1] and second in names[0]
-            )
-            if both:
-                during = (times >= step.start_time) & (times <= step.end_time)
-                allowances.append((f"step {step.title}", during))
-    return allowances

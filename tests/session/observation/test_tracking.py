@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
+from harness.plugins.remarks.observers.physics import allowed_contacts, tracking_finding
 from harness.session.observation.tracking import as_commanded, held_finding, plan_against_physics
 from tests.approved import SAID, finding_text
 from tests.judging.synthetic_run import (
@@ -29,7 +30,8 @@ def none_nearer(_):
 
 
 def findings(run, kind, distances=none_nearer):
-    every = plan_against_physics(run, run.signals, run.signals, distances)
+    differences = plan_against_physics(run, run.signals, run.signals, distances)
+    every = (*differences, *tracking_finding(run), *allowed_contacts(run))
     SAID.extend(map(finding_text, every))
     return [each for each in every if each.kind == kind]
 
