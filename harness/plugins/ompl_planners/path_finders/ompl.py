@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+from harness.plugins.ompl_planners.names import CLASSES, resolve_name
 from harness.ports.path_planning import PathPlanner, PathRequest, PathResult
 
 
@@ -13,15 +14,17 @@ class OmplPlanners(PathPlanner):
 
     plugin_kind: ClassVar[str] = "path_finder"
     name: ClassVar[str] = "ompl"
+    planner_ids: ClassVar[tuple[str, ...]] = tuple(CLASSES)
 
     @classmethod
     def check(cls, planner_id: str, parameters: Mapping[str, float]) -> str:
-        """Give the parameters to a planner that plans nothing."""
+        """Accept MoveIt's names too; give the parameters to a planner that plans nothing."""
+        name = resolve_name(planner_id)
         if parameters:
             from harness.plugins.ompl_planners.parameters import check_parameters
 
-            check_parameters(planner_id, parameters)
-        return planner_id
+            check_parameters(name, parameters)
+        return name
 
     def find_path(self, request: PathRequest) -> PathResult:
         """Search with one planner."""
