@@ -16,7 +16,7 @@ A scenario names the files of a robot as they are:
 
 ```yaml
 robot:
-  urdf: arm.urdf                  # or xacro: arm.xacro, args: {prefix: left_}; or mjcf: arm.xml
+  urdf: arm.urdf                  # or xacro, with args: {prefix: left_}; or mjcf; or sdf
   srdf: arm.srdf
   packages: [../src]              # folders for package://, which may be read too
   moveit: {joint_limits: joint_limits.yaml, kinematics: kinematics.yaml}
@@ -28,7 +28,8 @@ in the folders of `packages`, of the option `--package-path` and of HARNESS_PACK
 their subfolders; next to the robot's package; and among installed Python packages. A robot
 without a `package.xml` may be in a folder with the package's name, at most three levels up. A
 robot that is named as `package://name/path` itself reads in all of that package. No file outside
-these folders is read.
+these folders is read. A robot in SDF finds models and meshes as an SDF world does too: in its own
+folder and the folder `models` in it, in `packages`, and in those of GZ_SIM_RESOURCE_PATH.
 
 The tables list what is *read*, *ignored* or *refused* (an error at its line and column, exit code
 2) of each file. Where *reported* is added, `harness check` and every run print a note. Each row

@@ -191,6 +191,6 @@ def formats_page() -> str:
 def sdf_table() -> str:
     """The elements of SDF that are read as a Markdown table."""
     rows = ["| in | read |", "| --- | --- |"]
-    for kind, words in READ.items():
+    for kind, words in (each for each in READ.items() if not each[0].startswith("robot")):
         rows.append(f"| `{kind}` | {', '.join(f'`{tag}`' for tag in words)} |")
     return "\n".join(rows)

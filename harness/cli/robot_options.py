@@ -10,7 +10,7 @@ from harness.cli.arguments import pair
 if TYPE_CHECKING:
     from harness.robot.robot_source import RobotSource
 
-ROBOT = "a bundled name; a URDF, xacro or MJCF file, also as package://name/path; a robot's folder"
+ROBOT = "a bundled name; a URDF, xacro, MJCF or SDF, also as package://name/path; a robot's folder"
 
 
 def add_robot_options(command: argparse.ArgumentParser) -> None:

@@ -84,10 +84,11 @@ class RobotSpec(SpecModel):
         default_factory=dict, description="Arguments of the xacro files, `srdf` included."
     )
     mjcf: str | None = Field(default=None, description="An MJCF file, as MuJoCo reads it.")
+    sdf: str | None = Field(default=None, description="An SDF file with the model of a robot.")
     srdf: str | None = Field(
         default=None,
-        description="SRDF file with groups, states and allowed pairs, for `urdf`, `xacro` or "
-        "`mjcf`; one with xacro elements is rendered with `args`.",
+        description="SRDF file with groups, states and allowed pairs, for `urdf`, `xacro`, "
+        "`mjcf` or `sdf`; one with xacro elements is rendered with `args`.",
     )
     packages: tuple[str, ...] = Field(
         default=(), description="The folders where package:// is looked up and meshes may be read."
@@ -176,13 +177,12 @@ class RobotSpec(SpecModel):
 
     @model_validator(mode="after")
     def _one_source(self) -> RobotSpec:
-        given = [
-            key for key in ("model", "urdf", "xacro", "mjcf") if getattr(self, key) is not None
-        ]
+        sources = ("model", "urdf", "xacro", "mjcf", "sdf")
+        given = [key for key in sources if getattr(self, key) is not None]
         if len(given) != 1 and not (not given and self.gripper):
             raise ValueError(
-                "`robot` needs exactly one of `model`, `urdf`, `xacro` and `mjcf`, or `gripper`"
-                " alone"
+                "`robot` needs exactly one of `model`, `urdf`, `xacro`, `mjcf` and `sdf`, or"
+                " `gripper` alone"
             )
         return self
 

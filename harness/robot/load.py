@@ -37,10 +37,9 @@ from harness.robot.robot_format import FORMATS, render_xacro, robot_format
 from harness.robot.robot_option import options_of, robot_option
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.srdf.read import read_srdf
-from harness.robot.urdf.urdf import SDF_HINT, parse_urdf
+from harness.robot.urdf.urdf import parse_urdf
 from harness.robot.xacro_file import arguments_of
 
-SDF_SUFFIXES = (".sdf", ".world")
 OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 
 
@@ -127,7 +126,8 @@ def load_robot(
 
 def _is_bundled(spec: RobotSpec) -> bool:
     """Whether a robot follows from its specification alone, without files of the user."""
-    files = spec.urdf or spec.xacro or spec.mjcf or spec.kinematics or spec.moveit or spec.args
+    keys = (*FORMATS, "kinematics", "moveit", "args")
+    files = any(getattr(spec, key) for key in keys)
     names = {name for name in (spec.model, spec.gripper) if name is not None}
     return not files and names <= _catalogue().keys()
 
@@ -203,7 +203,9 @@ def _main(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> R
         return robot_format(spec).read(spec, base_dir, collision)
     for key in OF_FILES:
         if getattr(spec, key):
-            raise RobotOptionError(key, "it requires a robot's file: `urdf`, `xacro` or `mjcf`")
+            raise RobotOptionError(
+                key, "it requires a robot's file: `urdf`, `xacro`, `mjcf` or `sdf`"
+            )
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 
@@ -233,10 +235,9 @@ def _part(
         known = did_you_mean(name, [*gripper_names(), *own], kinds)
     else:
         known = did_you_mean(name, robot_names(), "robots")
-    own = "a robot of your own is named by its file: `robot: {urdf: FILE}`"
+    kind = suffix if (suffix := folder.suffix[1:]) in FORMATS else "urdf"
+    own = f"a robot of your own is named by its file: `robot: {{{kind}: FILE}}`"
     hints = [known, *[own] * (key == "model"), *broken_plugins()]
-    if folder.suffix.lower() in SDF_SUFFIXES:
-        raise RobotOptionError(key, f"'{name}' is SDF: {SDF_HINT}")
     if "/" in name or name.startswith(".") or is_dir(folder):
         hints.insert(0, f"{folder} has no robot.yaml")
     raise RobotOptionError(key, f"'{name}' is not known; {'; '.join(hints)}")

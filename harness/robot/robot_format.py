@@ -17,7 +17,7 @@ from harness.robot.description import RobotDescription
 from harness.robot.options import with_options
 from harness.robot.packages import PackagePath
 
-FORMATS = ("urdf", "xacro", "mjcf")
+FORMATS = ("urdf", "xacro", "mjcf", "sdf")
 """Keys of `robot:` that name a file."""
 
 

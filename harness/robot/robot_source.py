@@ -22,7 +22,8 @@ from harness.robot.load import load_robot, load_scenario_robot
 from harness.robot.xacro_file import is_xacro
 
 ROBOT_YAML = "robot.yaml"
-KINDS = {".urdf": "urdf", ".srdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
+KINDS = {f".{kind}": kind for kind in ("urdf", "xacro", "mjcf", "sdf")}
+KINDS |= {".srdf": "urdf", ".xml": "mjcf", ".world": "sdf"}
 OPTIONS = {
     "srdf": "--srdf",
     "packages": "--package-path",
@@ -57,7 +58,7 @@ class RobotSource:
 
     @cached_property
     def kind(self) -> str:
-        """`urdf`, `xacro`, `mjcf`, `scenario` or `model`; of XML what it says, however it is named.
+        """A format, `scenario` or `model`; of XML what it says, however it is named.
 
         Raises:
             SpecError: The file is no XML that can be read.
@@ -69,11 +70,9 @@ class RobotSource:
             return "scenario"
         kind = KINDS.get(path.suffix.lower(), "model")
         root = self._root() if kind in ("urdf", "mjcf") else None
-        if root is None or root.tag not in ("robot", "mujoco"):
-            return kind
-        if root.tag == "mujoco":
-            return "mjcf"
-        return "xacro" if is_xacro(root) else "urdf"
+        if root is not None and root.tag == "robot":
+            return "xacro" if is_xacro(root) else "urdf"
+        return kind if root is None else {"mujoco": "mjcf", "sdf": "sdf"}.get(root.tag, kind)
 
     @property
     def has_no_srdf(self) -> bool:

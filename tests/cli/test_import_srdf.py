@@ -124,7 +124,7 @@ def test_meshes_are_found_from_wherever_the_folder_is(folder):
     [
         (["."], "'.' is a folder: name the SRDF in it"),
         (["arm.srdf"], "an SRDF says nothing without its robot: --robot FILE"),
-        (["arm.srdf", "--robot", "ur3e"], "--robot is a URDF, xacro or MJCF file, not 'ur3e'"),
+        (["arm.srdf", "--robot", "ur3e"], "--robot is a URDF, xacro, MJCF or SDF file, not 'ur3e'"),
         (["arm.srdf", "--robot", "arm.urdf", "-o", "a.yaml"], "'a.yaml' is no folder"),
         (["no.srdf", "--robot", "arm.urdf"], "robot.srdf: there is no file no.srdf"),
         (["arm.srdf", "--robot", "harm.urdf"], "there is no file harm.urdf; did you mean"),

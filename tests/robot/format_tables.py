@@ -20,6 +20,7 @@ from tests.robot.format_rows import (
 )
 from tests.robot.mjcf_arm import MJCF, TIP
 from tests.robot.more_format_rows import CALIBRATION_ROWS, MJCF_ROWS, PARTS, XACRO, XACRO_ROWS
+from tests.robot.sdf_format_rows import SDF, SDF_ROWS
 from tests.robot.ur_calibration import calibration_text
 from tests.world.sdf_files import ASCII_STL, COLLADA, TETRAHEDRON
 
@@ -31,6 +32,7 @@ FILES = {
     "kinematics.yaml": KINEMATICS,
     "arm.xacro": XACRO,
     "arm.xml": MJCF,
+    "arm.sdf": SDF,
     "calibration.yaml": calibration_text(),
 }
 NEXT_TO_THEM = {
@@ -49,6 +51,7 @@ MOVEIT = {"joint_limits": "limits.yaml", "kinematics": "kinematics.yaml"}
 OTHER_WORDS: dict[str, dict[str, Any]] = {
     "arm.xacro": {"xacro": "arm.xacro", "srdf": "arm.srdf", "packages": ["."]},
     "arm.xml": {"mjcf": "arm.xml", "tcp_link": "tcp"},
+    "arm.sdf": {"sdf": "arm.sdf"},
     "calibration.yaml": {"model": "ur5e", "kinematics": "calibration.yaml"},
 }
 
@@ -68,10 +71,16 @@ TABLES: dict[str, tuple[str, str, tuple[Row, ...]]] = {
     ),
     "arm.srdf": (
         "SRDF",
-        "`robot: {srdf: ...}` with a URDF, xacro or MJCF file; one in xacro takes `args:` too",
+        "`robot: {srdf: ...}` with a URDF, xacro, MJCF or SDF file; one in xacro takes `args:` too",
         SRDF_ROWS,
     ),
     "arm.xml": ("MJCF", "`robot: {mjcf: ...}`", MJCF_ROWS),
+    "arm.sdf": (
+        "SDF",
+        "`robot: {sdf: ...}`, SDFormat 1.4 to 1.11: a model, or a world with one model of a robot;"
+        "\n`srdf` and the other keys go with it as with a URDF",
+        SDF_ROWS,
+    ),
     "limits.yaml": (
         "MoveIt: joint_limits.yaml",
         "`robot: {moveit: {joint_limits: ...}}`",

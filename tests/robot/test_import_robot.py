@@ -316,10 +316,10 @@ def test_damping_leaves_half_of_the_effort_at_the_velocity_limit(tmp_path, dampi
     [
         (
             {"model": "arm.sdf"},
-            "'arm.sdf' is SDF: a robot is read from URDF, xacro or MJCF; SDF is",
+            "a robot of your own is named by its file: `robot: {sdf: FILE}`",
         ),
-        ({"gripper": "cell.world"}, "'cell.world' is SDF: a robot is read from"),
-        ({"urdf": "arm.sdf"}, "the root element is <sdf>, a URDF's is <robot>"),
+        ({"urdf": "arm.sdf"}, "a robot in SDF is named by `sdf`"),
+        ({"sdf": "arm.xml"}, "the root element is <mujoco>; that of an SDF file is <sdf>"),
         ({"urdf": "arm.xml"}, "a robot in MJCF is named by `mjcf`"),
     ],
 )

@@ -39,7 +39,7 @@ def test_the_pads_have_the_smaller_friction_of_gazebo(tmp_path, surfaces, expect
 
 def test_the_friction_of_the_pads_is_in_the_notes(tmp_path):
     arm = with_surfaces(tmp_path, ("left", "<mu1>0.2</mu1>"), ("right", "<mu1>0.3</mu1>"))
-    assert "gripper 'hand': its pads have the friction 0.2 of <gazebo>" in arm.notes
+    assert "gripper 'hand': its pads have the friction 0.2 of the file" in arm.notes
 
 
 def test_the_note_on_ignored_elements_names_what_is_read(tmp_path):

@@ -135,7 +135,7 @@ def test_a_file_below_the_package_of_a_world_is_named_with_its_folder(tmp_path, 
     problem = problem_of(tmp_path / "worlds", text_with("world", include))
     assert problem.message == f"`file://{name}` is not found"
     assert problem.hint.startswith(f"it is in {tmp_path}; name its folder in `world:")
-    assert problem.hint.endswith("or of an import with --model-path")
+    assert problem.hint.endswith("or with --model-path or --package-path")
 
 
 @pytest.mark.parametrize("scheme", ["model", "package"])

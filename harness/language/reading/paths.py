@@ -7,7 +7,7 @@ from pathlib import Path
 
 from harness.language.files.source import Entry, Located
 
-ROBOT_FILES = ("urdf", "xacro", "mjcf", "srdf", "kinematics")
+ROBOT_FILES = ("urdf", "xacro", "mjcf", "sdf", "srdf", "kinematics")
 FOLDER_LISTS = ("packages", "model_path")
 WORLD_FILES = (".yaml", ".yml", ".sdf", ".world", ".xml")
 

@@ -67,7 +67,7 @@ def files_outside(folder: Path) -> list[str]:
     robot = load_scenario(folder / SCENARIO).scenario.robot
     if robot is None:
         return []
-    files = (robot.model, robot.urdf, robot.xacro, robot.mjcf, robot.srdf, robot.gripper)
+    files = (robot.model, robot.urdf, robot.xacro, robot.mjcf, robot.sdf, robot.srdf, robot.gripper)
     named = [name for name in (*files, *robot.packages) if name]
     places = [(folder / SCENARIO).parent / name for name in named]
     return [

@@ -27,7 +27,7 @@ from harness.robot.robot_source import RobotSource
 from harness.world.imported import Note
 
 OnProgress = Callable[[str, int, int], None]
-SOURCE_KEYS = ("urdf", "xacro", "mjcf", "srdf")  # keys of `robot:` that hold a path
+SOURCE_KEYS = ("urdf", "xacro", "mjcf", "sdf", "srdf")  # keys of `robot:` that hold a path
 
 
 @dataclass(frozen=True)

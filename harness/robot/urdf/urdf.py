@@ -27,7 +27,6 @@ from harness.robot.urdf.values import rgba
 from harness.robot.xacro_file import xacro_parts
 
 MOST_LINKS = 500  # pairs of links grow with its square
-SDF_HINT = "a robot is read from URDF, xacro or MJCF; SDF is read as a world, by `world`"
 OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
 READ = {
     "robot": ("link", "joint", "material", "ros2_control"),
@@ -90,7 +89,10 @@ def parse_urdf(
     """
     root = document if isinstance(document, XmlElement) else parse_xml(document, source)
     if root.tag != "robot":
-        hints = {"sdf": SDF_HINT, "mujoco": "a robot in MJCF is named by `mjcf`"}
+        hints = {
+            "sdf": "a robot in SDF is named by `sdf`",
+            "mujoco": "a robot in MJCF is named by `mjcf`",
+        }
         message = f"the root element is <{root.tag}>, a URDF's is <robot>"
         root.refuse(message, hints.get(root.tag, ""))
     replaced = next(xacro_parts(root), None)

@@ -1,4 +1,4 @@
-"""Readers of robots: robot.yaml, URDF, SRDF, xacro, MJCF, joint limits and meshes."""
+"""Readers of robots: robot.yaml, URDF, SRDF, xacro, MJCF, SDF, joint limits and meshes."""
 
 from __future__ import annotations
 
@@ -82,6 +82,28 @@ def _xacros(folder: Path) -> list[bytes]:
   </xacro:unless>
 """
     return [whole.encode(), whole.replace("  <xacro:limb", f"{more}  <xacro:limb", 1).encode()]
+
+
+def _sdfs(folder: Path) -> list[bytes]:
+    from tests.robot.sdf_format_rows import FOLLOWS, SDF
+
+    del folder
+    frame = "<frame name='tool' attached_to='wrist'/></model>"
+    more = SDF.replace("</model>", frame).replace(
+        "<xyz>0 -1 0</xyz>", f"<xyz>0 -1 0</xyz>{FOLLOWS}"
+    )
+    return [SDF.encode(), more.encode()]
+
+
+def _begin_sdf(_: Path) -> Read:
+    from harness.language.scenario import RobotSpec
+    from harness.robot.load import load_robot
+
+    def read(folder: Path, data: bytes) -> None:
+        put(folder, "arm.sdf", data)
+        load_robot(RobotSpec.model_validate({"sdf": "arm.sdf"}), folder)
+
+    return read
 
 
 def _mjcfs(folder: Path) -> list[bytes]:
@@ -214,6 +236,7 @@ READERS: dict[str, Reader] = {
     "expression": Reader(
         lambda _: [text.encode() for text in EXPRESSIONS], mutation.of_text, _begin_expressions
     ),
+    "robot in sdf": Reader(_sdfs, mutation.of_xml, _begin_sdf),
     "mjcf": Reader(_mjcfs, mutation.of_xml, _begin_mjcf),
     "xml": Reader(
         lambda folder: [*_urdfs(folder)[:1], *_srdfs(folder)[:1], *_xacros(folder)],

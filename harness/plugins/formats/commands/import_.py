@@ -46,8 +46,8 @@ class ImportCommand(Command):
         add("--model-path", metavar="DIR", action="append", default=[], help=text)
         add("--force", action="store_true", help="overwrite what exists")
         text = (
-            "the robot of an SRDF or of MoveIt's files: a URDF, xacro or MJCF; for `moveit` also a"
-            " bundled name"
+            "the robot of an SRDF or of MoveIt's files: a URDF, xacro, MJCF or SDF; for `moveit`"
+            " also a bundled name"
         )
         add("--robot", metavar="FILE", default="", help=text)
         add_robot_options(command)
@@ -99,7 +99,7 @@ def _robot(arguments: argparse.Namespace) -> int:
     if source.is_dir():
         raise UsageError(f"'{source}' is a folder: name the SRDF in it")
     if not arguments.robot:
-        raise UsageError("an SRDF says nothing without its robot: --robot FILE (URDF, xacro, MJCF)")
+        raise UsageError("an SRDF says nothing without its robot: --robot FILE (URDF, MJCF, SDF)")
     folder = Path(arguments.output) if arguments.output else source.with_suffix("")
     folder = folder.parent if folder.name == "robot.yaml" else folder
     if folder.suffix:
@@ -110,7 +110,7 @@ def _robot(arguments: argparse.Namespace) -> int:
 
     robot = source_of(argparse.Namespace(**{**vars(arguments), "srdf": arguments.file}))
     if robot.kind not in KINDS.values():
-        raise UsageError(f"--robot is a URDF, xacro or MJCF file, not '{arguments.robot}'")
+        raise UsageError(f"--robot is a URDF, xacro, MJCF or SDF file, not '{arguments.robot}'")
     found = robot_folder(RobotSpec.of_options(robot.words()), Path(), folder)
     contents = {folder / name: text.encode() for name, text in found.files.items()}
     _write(contents, is_forced=arguments.force)

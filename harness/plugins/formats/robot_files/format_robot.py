@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from harness.core.wrench_sensor import WrenchSensor
 from harness.robot.description import NamedState
+from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf
 
 
@@ -19,9 +20,11 @@ class FormatRobot:
         states: States of the driven joints; their group is empty.
         disabled: Pairs of links that are not checked for collisions, with the reason.
         wrench_sensors: Sensors of force and torque by name.
+        hands: Groups and end effectors of the grippers that the file names.
     """
 
     urdf: Urdf
     states: tuple[NamedState, ...]
     disabled: Mapping[tuple[str, str], str]
     wrench_sensors: Mapping[str, WrenchSensor] = field(default_factory=dict[str, WrenchSensor])
+    hands: Srdf = field(default_factory=Srdf)

@@ -12,12 +12,14 @@ from harness.language.scenario import RobotSpec
 from harness.plugins.formats.keys.moveit import MoveItFiles
 from harness.plugins.formats.robot_files.checked_srdf import checked_srdf
 from harness.plugins.formats.robot_files.default_group import default_srdf
+from harness.plugins.formats.robot_files.format_robot import FormatRobot
 from harness.plugins.formats.robot_files.imported_files import (
     files_around,
     refuse_unknown_arguments,
 )
 from harness.plugins.formats.robot_files.imported_part import imported_part, refuse_unknown_links
 from harness.plugins.formats.robot_files.moveit_files import with_joint_limits
+from harness.plugins.formats.sdf_robot.model import read_sdf_robot
 from harness.plugins.formats.xacro.render import render
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
@@ -36,7 +38,7 @@ from harness.robot.urdf.urdf import Urdf, parse_urdf
 def read_robot(
     spec: RobotSpec, base_dir: Path, collision: CollisionMode | None = None
 ) -> RobotPart:
-    """The robot of `urdf:`, `xacro:` or `mjcf:`, with its SRDF or a default one.
+    """The robot of `urdf:`, `xacro:`, `mjcf:` or `sdf:`, with its SRDF or a default one.
 
     See `RobotFormat.read` for arguments and errors.
     """
@@ -51,14 +53,13 @@ def read_robot(
         from harness.plugins.formats.mjcf_robot.mjcf import read_mjcf  # loads MuJoCo
 
         found = read_mjcf(path, packages)
-        urdf, states, excluded = found.urdf, found.states, found.disabled
-        sensors = found.wrench_sensors
+    elif key == "sdf":
+        found = read_sdf_robot(path, packages, given)
     else:
         is_xacro = key == "xacro"
         document = render(path, spec.args, packages) if is_xacro else read_bounded(path)
-        urdf, states, excluded = parse_urdf(document, path.parent, str(path), packages), (), {}
-        sensors = {}
-    urdf = _without_world(urdf)
+        found = FormatRobot(parse_urdf(document, path.parent, str(path), packages), (), {})
+    urdf, states = _without_world(found.urdf), found.states
     urdf = replace(urdf, links=with_collision_modes(urdf.links, spec.collision, collision))
     srdf = None
     if srdf_path is not None:
@@ -68,12 +69,12 @@ def read_robot(
     refuse_unknown_links(spec, urdf)
     _check_limits(spec, urdf, base_dir)
     decompose_meshes(urdf.links, urdf.mesh_elements)  # what needs no shapes is checked before
-    srdf = srdf or _default_srdf(spec, urdf, states)
+    srdf = srdf or _default_srdf(spec, urdf, states, found.hands)
     urdf = with_estimated_masses(urdf)
     part = imported_part(spec, urdf, srdf, path, str(srdf_path or path))
-    allowed = {**excluded, **part.srdf.disabled}
+    allowed = {**found.disabled, **part.srdf.disabled}
     disabled = replace(part.srdf, disabled=allowed)
-    return replace(part, srdf=disabled, wrench_sensors=sensors)
+    return replace(part, srdf=disabled, wrench_sensors=found.wrench_sensors)
 
 
 def _check_limits(spec: RobotSpec, urdf: Urdf, base_dir: Path) -> None:
@@ -89,12 +90,12 @@ def _check_limits(spec: RobotSpec, urdf: Urdf, base_dir: Path) -> None:
         with_joint_limits(urdf.joints, path, urdf.name, [])
 
 
-def _default_srdf(spec: RobotSpec, urdf: Urdf, states: Sequence[NamedState]) -> Srdf:
-    """The SRDF of a robot that has none, with an MJCF's keyframes as states of its groups."""
+def _default_srdf(spec: RobotSpec, urdf: Urdf, states: Sequence[NamedState], hands: Srdf) -> Srdf:
+    """The SRDF of a robot that has none, with an MJCF's keyframes and an SDF's grippers."""
     srdf = default_srdf(urdf, spec.tcp_link or "")
-    groups = [group.name for group in srdf.groups]
-    named = tuple(replace(state, group=group) for group in groups for state in states)
-    return replace(srdf, states=named)
+    named = tuple(replace(each, group=group.name) for group in srdf.groups for each in states)
+    groups = (*srdf.groups, *hands.groups)
+    return replace(srdf, groups=groups, states=named, end_effectors=hands.end_effectors)
 
 
 def _srdf(parsed: Srdf, urdf: Urdf, states: Sequence[NamedState], source: str) -> Srdf:

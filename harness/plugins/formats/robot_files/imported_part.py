@@ -77,7 +77,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     name = (urdf.name or path.stem)[:100]
     notes = [*urdf.notes, *srdf.notes]
     joints = with_reflected_friction(urdf.joints)
-    described_in = "the URDF" if spec.mjcf is None else "the MJCF"
+    described_in = "the MJCF" if spec.mjcf else "the SDF" if spec.sdf else "the URDF"
     limited = tuple(_limited(joint, described_in, notes) for joint in joints)
     urdf = replace(urdf, joints=limited)
     groups = planning_groups(srdf, urdf.joints, source)

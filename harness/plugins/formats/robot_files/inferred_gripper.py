@@ -401,7 +401,7 @@ def _friction(urdf: Urdf, group: str, pads: Sequence[str], notes: list[str]) -> 
     """The sliding friction coefficient of the pads: the smaller one where they differ."""
     known = [urdf.frictions.get(pad, PAD_FRICTION) for pad in pads]
     if urdf.frictions.keys() & set(pads):
-        notes.append(f"gripper '{group}': its pads have the friction {min(known):g} of <gazebo>")
+        notes.append(f"gripper '{group}': its pads have the friction {min(known):g} of the file")
     return min(known)
 
 

@@ -46,7 +46,7 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
     frame is added, and pairs and states with unknown names are left out.
 
     Args:
-        spec: A `urdf`, `xacro` or `mjcf` with its `srdf`.
+        spec: A `urdf`, `xacro`, `mjcf` or `sdf` with its `srdf`.
         base_dir: The folder to which its paths are relative.
         folder: The folder of the files, to which paths of meshes are relative.
 
@@ -83,7 +83,7 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
 
 
 def _sources(spec: RobotSpec) -> str:
-    given = (spec.urdf or spec.xacro or spec.mjcf, spec.srdf)
+    given = (spec.urdf or spec.xacro or spec.mjcf or spec.sdf, spec.srdf)
     return " and ".join(each for each in given if each)
 
 

@@ -106,8 +106,8 @@ def bodies_of(world: SdfScope, notes: Notes) -> list[SdfBody]:
             fixed.add(link.name)
             groups.join(firsts.setdefault(id(static), link.name), link.name)
     movable: list[SdfJoint] = []
-    for scope in _scopes(world):
-        _check_links(scope)
+    for scope in scopes_of(world):
+        check_links(scope)
         for name, item in scope.named.items():
             if item.kind == "joint":
                 joint = _joint(scope, name, item)
@@ -147,7 +147,7 @@ def _parts(movable: Sequence[SdfJoint], groups: _Groups, fixed: set[str]) -> dic
     return found
 
 
-def _check_links(scope: SdfScope) -> None:
+def check_links(scope: SdfScope) -> None:
     """Refuse a model that has no link, or not the one that represents it; and names given twice."""
     if scope.parent is not None:
         if scope.canonical_link:
@@ -173,8 +173,9 @@ def _links(world: SdfScope) -> list[SdfLink]:
     return found
 
 
-def _scopes(scope: SdfScope) -> list[SdfScope]:
-    return [scope, *(inner for nested in scope.nested.values() for inner in _scopes(nested))]
+def scopes_of(scope: SdfScope) -> list[SdfScope]:
+    """A scope and all that are nested in it."""
+    return [scope, *(inner for nested in scope.nested.values() for inner in scopes_of(nested))]
 
 
 def _outermost_static(scope: SdfScope) -> SdfScope | None:

@@ -21,8 +21,8 @@ FUEL_CACHE = "GZ_FUEL_CACHE_PATH"  # Gazebo's variable: the folder of Fuel's dow
 FUEL = re.compile(r"https?://(?P<host>[^/]+)/(?:[\d.]+/)?(?P<owner>[^/]+)/models/(?P<name>[^/]+)")
 
 HINT = (
-    "name its folder in `world: {name: ..., model_path: [...]}`, in GZ_SIM_RESOURCE_PATH, or of an"
-    " import with --model-path"
+    "name its folder in `world: {name: ..., model_path: [...]}` or `packages` of `robot:`, in"
+    " GZ_SIM_RESOURCE_PATH, or with --model-path or --package-path"
 )
 
 
@@ -35,6 +35,7 @@ class ModelPath:
 
     Attributes:
         folders: Searched in this order for `model://name`.
+        roots: Those that may be read.
     """
 
     def __init__(
@@ -58,7 +59,7 @@ class ModelPath:
         self._nearby = (world_folder.parent / "models", world_folder.parent)  # of most packages
         home = expanded(environment.get("HOME", "~"))
         self._cache = Path(environment.get(FUEL_CACHE) or home / ".gz" / "fuel")
-        self._roots = [folder.resolve() for folder in (*self.folders, self._cache)]
+        self.roots = [folder.resolve() for folder in (*self.folders, self._cache)]
 
     def find(self, uri: str, element: XmlElement, base_folder: Path) -> Path:
         """The file or folder of a URI.
@@ -78,7 +79,7 @@ class ModelPath:
             candidates = [base_folder / uri, *(folder / uri for folder in self.folders)]
         elif scheme in ("model", "package"):
             name, _, inside = rest.partition("/")
-            itself = [base_folder / inside] if base_folder.name == name else []
+            itself = [each / inside for each in (base_folder, *self.folders) if each.name == name]
             candidates = [*(folder / rest for folder in self.folders), *itself]
         elif scheme == "file":
             candidates = [base_folder / rest, *(folder / rest for folder in self.folders)]
@@ -90,7 +91,7 @@ class ModelPath:
             )
         is_outside = False
         for path in filter(is_there, candidates):
-            if any(path.resolve().is_relative_to(root) for root in self._roots):
+            if any(path.resolve().is_relative_to(root) for root in self.roots):
                 return path
             is_outside = True
         if is_outside:

@@ -52,6 +52,7 @@ class ShapeReader:
 
     model_path: ModelPath
     notes: Notes
+    checks_meshes: bool = True  # whether a mesh that nothing can touch is refused
 
     def collision(self, element: XmlElement, folder: Path, pose: SE3) -> ShapeSpec | None:
         """A collision shape; None for an empty geometry.
@@ -64,21 +65,21 @@ class ShapeReader:
             SpecError: Its geometry is invalid or not supported.
         """
         note_unread_elements(element, "collision", self.notes)
-        geometry = self._geometry(element)
+        geometry = self.geometry(element)
         if geometry.tag == "empty":
             return None
         if geometry.tag not in SHAPES:
             hint = f"shapes: {', '.join(SHAPES)}"
             geometry.refuse(f"a collision cannot be a <{geometry.tag}>", hint)
         shape = self._shape(element, geometry, folder, pose, friction=self._friction(element))
-        if geometry.tag == "mesh" and shape.mesh is not None:
+        if self.checks_meshes and geometry.tag == "mesh" and shape.mesh is not None:
             _refuse_untouchable(shape.mesh, geometry)
         return shape
 
     def visual(self, element: XmlElement, folder: Path, pose: SE3) -> ShapeSpec | None:
         """A visual shape; None when it is empty or cannot be drawn."""
         note_unread_elements(element, "visual", self.notes)
-        geometry = self._geometry(element)
+        geometry = self.geometry(element)
         color = self._color(element)
         if geometry.tag not in SHAPES:
             self.notes.add(geometry.place, f"a <{geometry.tag}> of a visual is not drawn")
@@ -93,7 +94,8 @@ class ShapeReader:
             self.notes.add(geometry.place, f"a visual is not drawn: {error.problems[0].message}")
             return None
 
-    def _geometry(self, element: XmlElement) -> XmlElement:
+    def geometry(self, element: XmlElement) -> XmlElement:
+        """The element of a collision's or visual's shape."""
         geometry = element.find("geometry")
         if geometry is None or not geometry.children:
             element.refuse(f"a <{element.tag}> has a <geometry> with one shape")

@@ -16,6 +16,7 @@ from harness.plugins.formats.sdf.values import PlacedPose, is_flag, is_true, pos
 from harness.world.imported import Notes
 
 OLDEST, NEWEST = (1, 4), (1, 11)
+OWN_AXES = (1, 5)  # the version from which an axis is in the frame of its joint
 NO_COLONS = (1, 8)  # the version from which `::` is in no name
 
 MOST_INCLUDES_DEEP = 30
@@ -39,14 +40,14 @@ class SdfTree:
         lights: Lights in file order, those of included files last.
     """
 
-    def __init__(self, path: Path, model_path: ModelPath) -> None:
-        """Read a file.
+    def __init__(self, path: Path, model_path: ModelPath, model: str = "model") -> None:
+        """Read a file; `model` is the kind in `elements.READ` of its models.
 
         Raises:
             SpecError: It is not SDF of a supported version, or has a mistake; located.
         """
         self.notes = Notes()
-        self._model_path = model_path
+        self._model_path, self._kind = model_path, model
         self._files: dict[Path, XmlElement] = {}
         self._versions: dict[str, tuple[int, int]] = {}
         self._count = 0
@@ -150,6 +151,9 @@ class SdfTree:
         child = text_of(element, "child")
         if not child or not text_of(element, "parent"):
             element.refuse("a <joint> has a <parent> and a <child>")
+        if self._versions[element.place.source.path] < OWN_AXES:
+            for axis in element.findall("axis"):
+                axis.children.append(XmlElement("use_parent_model_frame", {}, axis.place, [], "1"))
         base = "" if child == WORLD or scope.parent is None else child
         return Named("joint", element, pose_of(element), base)
 
@@ -171,7 +175,7 @@ class SdfTree:
         self._count += 1
         if self._count > SDF_MODELS:
             scope.element.refuse(f"more than {SDF_MODELS} models")
-        note_unread_elements(scope.element, "model", self.notes)
+        note_unread_elements(scope.element, self._kind, self.notes)
         parent.nested[scope.name] = scope
         self._fill(scope, files)
         scope.placement()

@@ -59,6 +59,18 @@ def number(parent: XmlElement, tag: str, default: float) -> float:
     return default if child is None else numbers_of(child, 1)[0]
 
 
+def bound(parent: XmlElement, tag: str) -> float:
+    """The limit in a child element; infinite without one, or where it is too large to be one."""
+    child = parent.find(tag)
+    try:
+        value = math.inf if child is None else float(child.text)
+    except ValueError:
+        value = math.nan
+    if math.isnan(value):
+        (child or parent).refuse(f"<{tag}>: expected a number")
+    return value if abs(value) <= LARGEST_NUMBER else math.inf
+
+
 def positive(parent: XmlElement, tag: str) -> float:
     """The positive number of a required child element.
 
