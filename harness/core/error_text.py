@@ -14,11 +14,14 @@ OWN_FOLDER = Path(__file__).resolve().parents[1]
 def error_text(error: BaseException) -> str:
     """The traceback of an exception; of one that left a plug-in's code, only the plug-in's part.
 
-    Of a package of an extra that is not installed it says how to install it.
+    Of a package of an extra that is not installed it says how to install it, and of memory that is
+    not there that alone.
 
     The frames of this program say nothing to the author of a plug-in, whose line is the last one
     of the author's own.
     """
+    if isinstance(error, MemoryError):
+        return "harness: there is not enough memory"
     if missing := missing_extra(error):
         return missing
     files = plugin_files()

@@ -67,6 +67,12 @@ def _cell(
     return Cell(head, known, others, begins)
 
 
+def _touching(*steps: dict[str, Any]) -> dict[str, Any]:
+    """Steps in which the gripper may touch what stands there."""
+    pairs = [["gripper", "holed"], ["gripper", "peg"], ["peg", "holed"], ["gripper", "floor"]]
+    return {"allow_collisions": {"pairs": pairs, "during": list(steps)}}
+
+
 SMALL = ("joint1", "joint2", "joint3", "joint4")
 UR = ("shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_3_joint")
 TABLE = _box("table", [0.1, 0.3, 0.04], [0.25, 0.1, 0.02], static=True)
@@ -105,6 +111,21 @@ CHEST = {
         },
     ],
 }  # fmt: skip
+HOLE = {"diameter": 0.0202, "depth": 0.04}
+HOLED = {
+    "name": "holed", "static": True, "box": {"size": [0.08, 0.08, 0.05], "hole": HOLE},
+    "friction": 0.1, "pose": {"xyz": [0.5, 0.1, 0.025]},
+}  # fmt: skip
+PEG = {
+    "name": "peg", "cylinder": {"radius": 0.01, "length": 0.08}, "mass": 0.1,
+    "pose": {"xyz": [0.5, -0.15, 0.0399]},
+}  # fmt: skip
+DOWN = {"xyz": [0, 0, -1]}
+TOUCH = {"direction": DOWN, "contact": True, "max_distance": 0.1, "speed": 0.02}
+PRESS = {"direction": DOWN, "force": 20, "max_distance": 0.01, "speed": 0.005}
+YIELD = {"stiffness": {"x": 8000, "y": 8000}, "wrench": {"z": -10}}
+LIFT = {"direction": {"xyz": [0, 0, 1]}, "distance": 0.02}
+ABOVE = {"pose": {"xyz": [0.5, 0.1, 0.12], "rpy": [3.14159, 0, 0]}}
 LEFT_AND_RIGHT = {
     side: {"model": "open_manipulator_x", "base": {"xyz": [0, y, 0]}}
     for side, y in (("left", 0.15), ("right", -0.15))
@@ -137,12 +158,36 @@ CELLS = {
         [{"open": {"object": "chest", "joint": "drawer", "to": 0.1}}], [{"wait": 0.02}],
         joint=("drawer", "lid", UR[0]),
     ),
+    "wrist": _cell(
+        {
+            "robot": {
+                "model": "ur5e", "gripper": "rh_p12_rn_a",
+                "wrench_sensors": {"wrist": "rh_p12_rn_base"},
+            }
+        },
+        [HOLED, PEG], UR, ("tool0", "wrist_3_link"),
+        [{"move_to": ABOVE}, {"tare": "wrist"}, _touching({"move_until": TOUCH})],
+        [
+            {"move_to": ABOVE},
+            _touching({"move_until": TOUCH}, {"move_until": PRESS}, {"wait": 0.02}),
+        ],
+        [
+            {"pick": {"object": "peg", "max_effort": 8}},
+            _touching({"comply": {**YIELD, "during": [{"wait": 0.05}]}}),
+        ],
+        [{"gripper": "close"}, {"comply": {**YIELD, "during": [{"move_relative": LIFT}]}}],
+        sensor=("wrist",), tare=("wrist",), peg=("peg",), hole=("holed",),
+    ),
     "two arms": _cell(
         {"robots": LEFT_AND_RIGHT}, [TABLE, BLOCK, BALL],
         tuple(f"{side}_{joint}" for side in LEFT_AND_RIGHT for joint in SMALL[:2]),
         ("left_link5", "right_end_effector_link"),
         [{"pick": "block", "robot": "right"}],
         [{"parallel": [{"move_to": "home", "robot": side} for side in LEFT_AND_RIGHT]}],
+        [
+            {"pick": "block", "robot": "right"},
+            {"parallel": [{"move_to": "home", "robot": side} for side in LEFT_AND_RIGHT]},
+        ],
         by=("left", "right"), robot=("left", "right"), group=("left", "right"),
     ),
 }  # fmt: skip

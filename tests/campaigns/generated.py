@@ -26,8 +26,8 @@ from tests.campaigns.invariants import assert_invariants
 from tests.campaigns.records import count_scenarios
 
 NUMBERS = (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, -0.05, -0.1, 10)
-LEFT_OUT = ("external", "include", "inject")
-"""Steps that need nodes or files; faults have scenarios of their own."""
+LEFT_OUT = ("external", "include")
+"""Steps that need nodes or files."""
 SIZES = {"times": (1, 2), "seconds": (0.01,), "duration": (0.01, 0.02), "timeout": (0.05,)}
 ROUNDS = 4  # checks, after each of which what is refused is left out
 BEGUN = 0.6  # share of scenarios that begin with steps that make sense in their cell

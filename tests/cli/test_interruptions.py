@@ -124,6 +124,37 @@ def test_the_first_signal_waits_for_the_end_of_an_import(folder, signals, where)
     assert (done.stdout.strip(), done.stderr) == (where, "")
 
 
+IGNORED = """\
+import os, signal, time, weakref
+from harness.core.interruption import interrupt
+signal.signal(signal.SIGINT, interrupt)
+class Thing:
+    pass
+def stop(*_):
+    os.kill(os.getpid(), signal.SIGINT)
+    pass
+try:
+    {act}
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+ACTS = {
+    "fork": "os.register_at_fork(after_in_parent=stop); os.fork() or os._exit(0)",
+    "end of an object": "Thing.__del__ = stop; Thing()",
+    "weak reference": "thing = Thing(); kept = weakref.ref(thing, stop); del thing",
+}
+
+
+@pytest.mark.parametrize("act", ACTS.values(), ids=ACTS)
+def test_a_signal_is_not_lost_where_python_ignores_exceptions(act):
+    done = subprocess.run(
+        [sys.executable, "-c", IGNORED.format(act=act)],
+        capture_output=True, text=True, check=False, timeout=HANG,
+    )  # fmt: skip
+    assert (done.stdout.strip(), done.stderr) == ("interrupted", "")
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("redirection", "code"),

@@ -28,7 +28,7 @@ from tests.campaigns.attacks import workshop
 from tests.campaigns.records import count_attacks
 
 NEW_MOUNTS = 0x20000  # CLONE_NEWNS of Linux
-ATTACKS = ("odd_paths", "long_words", "signals", "limits", "clocks", "together")
+ATTACKS = ("odd_paths", "long_words", "signals", "limits", "clocks", "together", "servers")
 
 
 def campaign(

@@ -50,6 +50,8 @@ def attack(rng: random.Random, master: Path, folder: Path) -> tuple[str, list[st
     codes = [*trial.CODES, 128 + number, -signal.SIGKILL if is_killed else 130]
     if not ended.said:  # the program had not begun
         codes += [-number]
+    if kind == "kill worker":  # its parent says what ended it
+        codes += [128 + signal.SIGKILL]
     found = trial.complaints(ended, codes=codes)
     left = trial.leftovers(place, pid)
     if not is_killed:  # what a killed command leaves, the next one removes
