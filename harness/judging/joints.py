@@ -6,13 +6,14 @@ A tolerance that the file does not give is one of angles. For joints that slide,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from harness.cell.scope import At
 from harness.core.amounts import amounts, is_exact
 from harness.core.types import FloatArray
+from harness.judging.limits import error_range, refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
 from harness.language.expectation import Quantity
@@ -30,28 +31,31 @@ POSITION_ERROR = Quantity(
 )
 
 
-def check_tolerance(at: At, targets: Mapping[str, float], tolerance: float, is_given: bool) -> None:
-    """Report a tolerance that no possible joint position exceeds; arguments as of `near`."""
-    joints = at.scope.description.joint_by_name
-    reaches = [
-        np.pi
-        if joint.kind == "continuous"
-        else max(joint.upper - targets[name], targets[name] - joint.lower)
-        for name, joint in joints.items()
-        if name in targets
-    ]
-    if is_given:
-        refuse_unbreakable(at, tolerance, reaches, f"position of {' or '.join(sorted(targets))}")
+def check_tolerance(
+    at: At, key: str, targets: Mapping[str, float], tolerance: float, is_given: bool
+) -> None:
+    """Report targets that no joint comes near, and a tolerance that no position exceeds.
+
+    `key` is that of the targets, or of the only one; the others are as of `near`.
+    """
+    of, largest = "the position error of ", 0.0
+    for name, joint in at.scope.description.joint_by_name.items():
+        if name in targets:
+            turns = joint.kind == "continuous"
+            stops = (-np.pi, np.pi) if turns else (joint.lower, joint.upper)
+            ends = error_range(0.0 if turns else targets[name], *stops)
+            largest, limit = max(largest, ends[1]), _limit_of(joint, tolerance, is_given)
+            if limit < ends[0]:
+                here, last = (At(at.scope, at.key(key)), name) if key == "positions" else (at, key)
+                refuse_decided(here, last, "<=", limit, ends, of + name)
+    if largest and is_given:
+        of += " or ".join(sorted(targets))
+        refuse_decided(at, "tolerance", "<=", tolerance, (0.0, largest), of)
 
 
-def refuse_unbreakable(at: At, tolerance: float, errors: Sequence[float], of: str) -> None:
-    """Report a tolerance that is no less than the largest possible error."""
-    if errors and max(errors) <= tolerance:
-        at.scope.problems.add(
-            at.key("tolerance"),
-            f"no {of} is beyond this tolerance",
-            "angles without a unit are in radians, lengths in metres",
-        )
+def _limit_of(joint: Joint, tolerance: float, is_given: bool) -> float:
+    slides = joint.kind == "prismatic" and not is_given
+    return min(tolerance, SLIDING_TOLERANCE) if slides else tolerance
 
 
 def joint_column(run: Run, name: str) -> tuple[int, Joint]:
@@ -134,8 +138,7 @@ def near(
         error = window.cut(window.run.signals.joint_positions)[:, column] - targets[name]
         if joint.kind == "continuous":
             error = np.arctan2(np.sin(error), np.cos(error))
-        slides = joint.kind == "prismatic" and not is_given
-        limit = min(tolerance, SLIDING_TOLERANCE) if slides else tolerance
+        limit = _limit_of(joint, tolerance, is_given)
         off, unit = np.abs(error), joint.position_unit
         parts.append(Part(POSITION_ERROR, off, limit, "<=", detail=name, measured_unit=unit))
 

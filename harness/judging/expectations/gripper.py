@@ -14,13 +14,8 @@ from harness.core.state_words import stated_name
 from harness.judging.contacts import finger_gap
 from harness.judging.expectation import ArmPredicate, Mechanisms
 from harness.judging.hands import gripper_of
-from harness.judging.joints import (
-    POSITION_ERROR,
-    SLIDING_TOLERANCE,
-    check_tolerance,
-    near,
-    refuse_unbreakable,
-)
+from harness.judging.joints import POSITION_ERROR, SLIDING_TOLERANCE, check_tolerance, near
+from harness.judging.limits import error_range, refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, NotReached, Window, refuse_unrecorded_steps
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
@@ -71,15 +66,17 @@ class GripperState(ArmPredicate):
         hand = at.scope.description.gripper
         if self.width is not None:
             at.scope.problems.check_unit(at.key("tolerance"), "m")
-            if hand is not None and "tolerance" in self.model_fields_set:
-                errors = np.abs(hand.widths[:, 1] - self.width).tolist()
-                refuse_unbreakable(at, self.tolerance, errors, "gap of the gripper")
+            if hand is not None:
+                gaps, is_given = hand.widths[:, 1], "tolerance" in self.model_fields_set
+                ends = error_range(self.width, float(gaps.min()), float(gaps.max()))
+                limit = self.tolerance if is_given else SLIDING_TOLERANCE
+                refuse_decided(at, "tolerance", "<=", limit, ends, "the error of the gap")
         elif hand is not None:
             for key in self.model_fields_set.intersection(("position", "tolerance")):
                 at.scope.check_joint_unit(hand.joint, at.key(key))
         if self.position is not None and hand is not None:
             is_given = "tolerance" in self.model_fields_set
-            check_tolerance(at, {hand.joint: self.position}, self.tolerance, is_given)
+            check_tolerance(at, "position", {hand.joint: self.position}, self.tolerance, is_given)
         if self.named_target is not None and hand is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
 

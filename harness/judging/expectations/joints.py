@@ -32,7 +32,7 @@ class Joints(Predicate):
         for name in self.positions:
             at.scope.check_joint(name, at.key("positions", name))
         is_given = "tolerance" in self.model_fields_set
-        check_tolerance(at, self.positions, self.tolerance, is_given)
+        check_tolerance(at, "positions", self.positions, self.tolerance, is_given)
 
     def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
         return mechanisms.units_of(self.positions)

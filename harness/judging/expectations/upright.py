@@ -7,9 +7,11 @@ from typing import Annotated
 
 from pydantic import Field
 
+from harness.cell.scope import At
 from harness.core.amounts import amounts, is_exact
 from harness.core.pose_arrays import angle_between, rotate
 from harness.judging.expectation import ObjectPredicate
+from harness.judging.limits import lean_range, refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import UP, physical_poses
 from harness.judging.window import Window
@@ -30,6 +32,12 @@ class Upright(ObjectPredicate):
     tolerance: Annotated[Angle, Field(gt=0, lt=math.pi)] = Field(
         default=0.1, description="The largest angle between its z axis and the vertical [rad]."
     )
+
+    def check(self, at: At) -> None:
+        super().check(at)
+        if (part := at.scope.objects.get(self.object)) is not None and part.joint is not None:
+            ends, of = lean_range(part.joint), "the lean, by the joint,"
+            refuse_decided(at, "tolerance", "<=", self.tolerance, ends, of)
 
     def looks_back(self) -> float:
         return 0.0

@@ -42,7 +42,7 @@ from harness.plugins.formulas.language.formula import (
     Number,
     Signal,
     Temporal,
-    comparisons_of,
+    parts_of,
     premises_of,
     signals_of,
     text_of,
@@ -349,7 +349,9 @@ class Evaluation:
 
     def first_undefined(self, root: Node) -> str:
         """The first sample at which a comparison of known signals has no value; empty if none."""
-        for node in comparisons_of(root):
+        for node in parts_of(root):
+            if not isinstance(node, Comparison):
+                continue
             bounds = self.bounds(node)
             undefined = np.isinf(bounds.low) & np.isinf(bounds.high)
             if undefined.any():

@@ -42,7 +42,7 @@ class NamedTarget(Predicate):
         state = states.get(stated_name(self.state, states))
         if state is not None:
             is_given = "tolerance" in self.model_fields_set
-            check_tolerance(at, state.positions, self.tolerance, is_given)
+            check_tolerance(at, "state", state.positions, self.tolerance, is_given)
 
     def names(self) -> frozenset[str]:
         return frozenset()

@@ -12,6 +12,7 @@ from harness.core.amounts import amount
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.expectation import Mechanisms, Predicate
 from harness.judging.joints import gripper_joints, hand_joints
+from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
 from harness.language.base import JointValue
@@ -39,12 +40,8 @@ class TrackingError(Predicate):
     def check(self, at: At) -> None:
         robot = at.scope.description
         joints = [robot.movable_joints[index] for index in robot.group_indices(robot.default_group)]
-        if joints and all(joint.upper - joint.lower <= self.max for joint in joints):
-            at.scope.problems.add(
-                at.key("max"),
-                "no joint of the arm can be that far from its command",
-                "angles without a unit are in radians, lengths in metres",
-            )
+        farthest = max((joint.upper - joint.lower for joint in joints), default=np.inf)
+        refuse_decided(at, "max", "<=", self.max, (0.0, farthest), "the tracking error")
 
     def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
         robot = mechanisms.robot

@@ -14,6 +14,7 @@ from harness.cell.scope import At
 from harness.core.extras import absent_package
 from harness.core.types import FloatArray, IntArray
 from harness.judging.expectation import Predicate
+from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations, PictureKind, PictureRequest
 from harness.judging.window import NotObservable, Window
@@ -122,6 +123,9 @@ class Sees(Predicate):
 
     def check(self, at: At) -> None:
         at.scope.check_camera(self.camera, at.key("camera"))
+        if camera := at.scope.cameras.get(self.camera):
+            ends, of = (0.0, camera.width * camera.height), "the number of pixels"
+            refuse_decided(at, "min_area", ">=", self.min_area, ends, of, "give a smaller one")
         if self.object is not None:
             at.scope.check_object(self.object, at.key("object"), simulated=True)
         elif missing := absent_package("cv2"):

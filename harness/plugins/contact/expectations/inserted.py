@@ -15,6 +15,7 @@ from harness.core.hole import Hole
 from harness.core.pose_arrays import compose, conjugate, rotate
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
+from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import physical_poses
 from harness.judging.window import NotObservable, Window, object_record
@@ -71,13 +72,9 @@ class Inserted(Predicate):
                 "a hole is a key of a box: `box: {size: [...], hole: {diameter: 20 mm}}`",
                 needs=("world",),
             )
-        elif self.depth > (deepest := max(hole.depth for hole in block.holes)):
-            scope.problems.add(
-                at.key("depth"),
-                f"the hole is {1e3 * deepest:g} mm deep, {1e3 * self.depth:g} mm are required",
-                "lengths without a unit are in metres",
-                needs=("world",),
-            )
+        else:
+            ends = 0.0, max(hole.depth for hole in block.holes)
+            refuse_decided(at, "depth", ">=", self.depth, ends, "the depth in the hole")
 
     def looks_back(self) -> float:
         return 0.0

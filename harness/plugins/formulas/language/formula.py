@@ -149,22 +149,27 @@ class Temporal:
 Node = Comparison | Logic | Temporal
 
 
+def operands_of(node: Node | Number) -> tuple[Node | Number, ...]:
+    """What a part of a formula joins."""
+    match node:
+        case Const() | Signal():
+            return ()
+        case Comparison(left=left, right=right):
+            return left, right
+        case _:
+            return node.operands
+
+
+def parts_of(node: Node | Number) -> Iterator[Node | Number]:
+    """A formula and all its parts, from the outermost to the innermost, from left to right."""
+    yield node
+    for operand in operands_of(node):
+        yield from parts_of(operand)
+
+
 def signals_of(node: Node | Number) -> list[Signal]:
     """Every signal that a formula reads, from left to right."""
-    match node:
-        case Const():
-            return []
-        case Signal():
-            return [node]
-        case Comparison(left=left, right=right):
-            return signals_of(left) + signals_of(right)
-        case _:
-            return [found for operand in node.operands for found in signals_of(operand)]
-
-
-def frames_of(node: Node) -> set[str]:
-    """Names whose poses a formula reads: `tcp`, links, objects."""
-    return arguments_of(node, "frame")
+    return [part for part in parts_of(node) if isinstance(part, Signal)]
 
 
 def arguments_of(node: Node, *kinds: Kind) -> set[str]:
@@ -177,37 +182,16 @@ def arguments_of(node: Node, *kinds: Kind) -> set[str]:
     }
 
 
-def constants_of(node: Node | Number) -> list[Const]:
-    """Every number that a formula names, from left to right."""
-    match node:
-        case Const():
-            return [node]
-        case Signal():
-            return []
-        case Comparison(left=left, right=right):
-            return constants_of(left) + constants_of(right)
-        case _:
-            return [found for operand in node.operands for found in constants_of(operand)]
-
-
-def comparisons_of(node: Node) -> list[Comparison]:
-    """Every comparison of a formula, from left to right."""
-    if isinstance(node, Comparison):
-        return [node]
-    return [found for operand in node.operands for found in comparisons_of(operand)]
-
-
 def premises_of(node: Node) -> list[Node]:
     """The premise P of every `P implies Q`, `not P or Q` and `Q or not P`, the outermost first."""
-    if isinstance(node, Comparison):
-        return []
-    here: list[Node] = []
-    if isinstance(node, Logic) and node.operator == "implies":
-        here = [node.operands[0]]
-    if isinstance(node, Logic) and node.operator == "or":
-        negated = [part.operands[0] for part in node.operands if _is_negation(part)]
-        here = negated if len(negated) == 1 else []  # two are a choice, and no implication
-    return here + [found for operand in node.operands for found in premises_of(operand)]
+    found: list[Node] = []
+    for part in parts_of(node):
+        if isinstance(part, Logic) and part.operator == "implies":
+            found.append(part.operands[0])
+        if isinstance(part, Logic) and part.operator == "or":
+            negated = [each.operands[0] for each in part.operands if _is_negation(each)]
+            found += negated if len(negated) == 1 else []  # two are a choice, and no implication
+    return found
 
 
 def _is_negation(node: Node) -> TypeGuard[Logic]:
@@ -261,22 +245,16 @@ def _unit_of_joint(signal: str, joint: str, joint_units: Mapping[str, str]) -> s
             return unit
 
 
-def mixed_units(
-    node: Node | Number, joint_units: Mapping[str, str]
-) -> Iterator[tuple[int, str, str]]:
+def mixed_units(node: Node, joint_units: Mapping[str, str]) -> Iterator[tuple[int, str, str]]:
     """Where a formula compares or adds numbers of two dimensions: start, and the two units."""
-    match node:
-        case Const() | Signal():
-            return
-        case Comparison(left=left, right=right):
-            operands: tuple[Node | Number, ...] = (left, right)
-            numbers: tuple[Number, ...] = (left, right)
-        case Arithmetic(operator=operator, operands=operands):
-            numbers = () if operator in "*/" else node.operands
-        case _:
-            operands, numbers = node.operands, ()
-    units = [unit for each in numbers if (unit := unit_of(each, joint_units))]
-    if len(set(units)) > 1:
-        yield node.start, units[0], units[1]
-    for operand in operands:
-        yield from mixed_units(operand, joint_units)
+    for part in parts_of(node):
+        match part:
+            case Comparison(left=left, right=right):
+                numbers = left, right
+            case Arithmetic(operator=operator, operands=numbers) if operator not in "*/":
+                pass
+            case _:
+                continue
+        units = [unit for each in numbers if (unit := unit_of(each, joint_units))]
+        if len(set(units)) > 1:
+            yield part.start, units[0], units[1]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
 from harness.core.suggestion import did_you_mean
@@ -22,7 +21,7 @@ from harness.plugins.formulas.language.formula import (
     Number,
     Signal,
     Temporal,
-    unit_of,
+    mixed_units,
 )
 from harness.plugins.formulas.language.text import WORDS, FormulaError, Token, tokens_of
 
@@ -35,6 +34,7 @@ BINDING = {
 }
 PREFIX = 5
 SIGN = 9
+SAME_KIND = "both sides must be of one kind"
 _CONNECT = "join formulas with and, or, implies, until"
 _LISTED = f"signals: {', '.join(SIGNALS)}"
 
@@ -87,6 +87,8 @@ class _Parser:
         node = self.formula(self.expression(0), self.tokens[0])
         if self.token.kind != "end":
             raise self.wrong(self.token, f"`{self.token.source}` cannot stand here", _CONNECT)
+        for start, left, right in mixed_units(node, {}):
+            raise FormulaError(start, 1, f"the formula joins {left} and {right}", SAME_KIND)
         return node
 
     def wrong(self, token: Token, message: str, hint: str = "") -> FormulaError:
@@ -142,13 +144,10 @@ class _Parser:
                 return Temporal("until", operands, interval, operator.start)
             case "<" | "<=" | ">" | ">=" as sign:
                 numbers = self.number(left, first), self.number(right, second)
-                return self.comparison(numbers[0], sign, numbers[1], first, operator)
+                return self.comparison(numbers[0], sign, numbers[1], first)
             case sign:
                 numbers = self.number(left, first), self.number(right, second)
-                node = Arithmetic(sign, numbers, first.start)
-                if sign in "+-":
-                    _same_unit(numbers, operator)
-                return node
+                return Arithmetic(sign, numbers, first.start)
 
     def comparison(
         self,
@@ -156,14 +155,11 @@ class _Parser:
         sign: Literal["<", "<=", ">", ">="],
         right: Number,
         first: Token,
-        operator: Token,
     ) -> Comparison:
         if self.at("<", "<=", ">", ">="):
             raise self.wrong(
                 self.token, "one comparison at a time", "join two with `and`: `1 < x and x < 2`"
             )
-        _same_unit((left, right), operator)
-        _refuse_beyond_range(left, right, operator)
         end = self.tokens[self.place - 1]
         text = self.text[first.start : end.start + len(end.source)]
         return Comparison(left, sign, right, first.start, " ".join(text.split()))
@@ -228,7 +224,6 @@ class _Parser:
             inner = self.token
             operands.append(self.number(self.expression(0), inner))
         self.expect(")", f"after the last number of `{token.text}`")
-        _same_unit(operands, token)
         return Arithmetic(token.text, tuple(operands), token.start)
 
     def signal(self, token: Token) -> Signal:
@@ -282,33 +277,6 @@ class _Parser:
         if constant.unit not in ("", "s"):
             raise self.wrong(token, "an interval is of seconds", "`[0, 2]`, `[0, 200 ms]`")
         return constant.value
-
-
-def _same_unit(numbers: tuple[Number, ...] | list[Number], operator: Token) -> None:
-    units = [unit for number in numbers if (unit := unit_of(number))]
-    if len(set(units)) > 1:
-        raise FormulaError(
-            operator.start, len(operator.source),
-            f"`{operator.source}` joins {units[0]} and {units[1]}",
-            "both sides must be of one kind",
-        )  # fmt: skip
-
-
-def _refuse_beyond_range(left: Number, right: Number, operator: Token) -> None:
-    """Refuse to compare an angle between two directions with one that it never has.
-
-    Raises:
-        FormulaError: The comparison holds always, or never.
-    """
-    for signal, limit in ((left, right), (right, left)):
-        if isinstance(signal, Signal) and signal.name == "tilt" and isinstance(limit, Const):
-            if 0 <= limit.value <= math.pi:
-                continue
-            raise FormulaError(
-                operator.start, len(operator.source),
-                f"{signal} is between 0 and pi rad, never {limit.value:g} rad",
-                f"write `{limit.value:g} deg` for degrees",
-            )  # fmt: skip
 
 
 def _count(kinds: tuple[Kind, ...]) -> str:

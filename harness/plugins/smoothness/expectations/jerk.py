@@ -12,6 +12,7 @@ from harness.core.amounts import amounts
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
 from harness.judging.joints import gripper_joints
+from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
 from harness.language.base import JointJerk, PositiveDuration
@@ -48,13 +49,9 @@ class Jerk(Predicate):
     def check(self, at: At) -> None:
         fastest = max((each.velocity for each in at.scope.description.movable_joints), default=0.0)
         largest = 4 * fastest / self.window**2  # the velocity changes its sign twice
-        if self.at_most >= largest > 0:
-            at.scope.problems.add(
-                at.key("at_most"),
-                f"no jerk is beyond this: joints that move at most {fastest:.3g} rad/s or m/s have"
-                f" at most {largest:.3g} over {self.window:g} s",
-                "give a smaller `at_most`, or a shorter `window`",
-            )
+        if largest > 0:
+            hint = "give a smaller one, or a shorter `window`"
+            refuse_decided(at, "at_most", "<=", self.at_most, (0.0, largest), "the jerk", hint)
 
     def signal(self, window: Window) -> MarginSignal:
         """Largest jerk of a joint at each sample [rad/s^3 or m/s^3].
