@@ -43,9 +43,10 @@ class State:
         )  # fmt: skip
 
     def put_back(self) -> None:
-        for name in os.environ.keys() - self.environment.keys():
-            del os.environ[name]
-        os.environ.update(self.environment)
+        if dict(os.environ) != self.environment:
+            for name in os.environ.keys() - self.environment.keys():
+                del os.environ[name]
+            os.environ.update(self.environment)
         os.chdir(self.folder)
         sys.path[:] = self.path
         for number, handler in zip(SIGNALS, self.handlers, strict=True):

@@ -72,6 +72,7 @@ def test_a_bar_of_a_mesh_may_pass_through_something_as_a_box_may(tmp_path, turn,
     assert bool(unseen_contacts(run, [("bar", "box")])) == is_missed
 
 
+@pytest.mark.nightly
 def test_the_triangles_of_a_mesh_have_no_thickness_and_enclose_what_is_not_recorded(tmp_path):
     shapes = mesh_shapes(tmp_path, cup(), collision="exact")
     assert least_thickness(shapes) == 0.0

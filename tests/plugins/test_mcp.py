@@ -105,6 +105,7 @@ def test_nothing_outside_the_folder_is_read_or_written(assistant):
     assert sorted(root.rglob("*")) == before
 
 
+@pytest.mark.nightly
 def test_an_unknown_word_of_the_language_is_refused_with_the_near_ones(assistant):
     assert "pick" in assistant.refusal("schema", name="pik")
 

@@ -239,7 +239,7 @@ def test_pytest_html_begins_with_causes_and_its_rows_have_margin_picture_and_pag
         """
     )
     words = ("--html=out/report.html", "--self-contained-html", "-p", "no:cacheprovider")
-    pytester.runpytest_subprocess(*words).assert_outcomes(passed=1, failed=2)
+    pytester.runpytest(*words).assert_outcomes(passed=1, failed=2)
     page = html.unescape((pytester.path / "out/report.html").read_text())
     tests = json.loads(re.search(r'data-jsonblob="(\{.*?\})"></div>', page, re.DOTALL)[1])["tests"]
     rows = {name.split("::")[-1]: row for name, (row,) in tests.items()}
@@ -313,7 +313,7 @@ def test_junit_of_samples_has_the_smallest_margin_and_every_seed_and_digest(pyte
 @pytest.mark.parametrize("options", [[], ["-n2"]], ids=["alone", "xdist"])
 def test_a_session_leaves_the_files_of_a_suite_in_file_order(pytester, write, options):
     write(a_fails=FAILS, b_holds=HOLDS, c_invalid=INVALID)
-    result = pytester.runpytest_subprocess(*options)
+    result = pytester.runpytest(*options)
     result.assert_outcomes(passed=1, failed=2)
     result.stdout.re_match_lines([r"reports: .*reports/index.html"])
     results = json.loads((pytester.path / "reports/results.json").read_text())

@@ -94,6 +94,7 @@ def test_what_never_moved_is_shown_where_it_was_to_move(opened, value, time, pla
 LOST = Finding("held", "the physics lost box at 0.90 s", 0.9, values={"held": False})
 
 
+@pytest.mark.nightly(but=["verdict0-1.19-finding0", "verdict1-1.19-finding1"])
 @pytest.mark.parametrize("finding", [LOST, replace(LOST, message="the physics lost cup")])
 @pytest.mark.parametrize(("verdict", "judged"), [(moved_off(), 1.19), (never_lifted(), 1.19)])
 def test_what_was_lost_opens_the_page_at_the_loss(opened, verdict, judged, finding):

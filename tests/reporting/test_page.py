@@ -190,6 +190,7 @@ steps:
 """
 
 
+@pytest.mark.nightly
 def test_the_page_opens_at_what_was_planned_for_the_step_that_failed(recorded_run, visit):
     folder = recorded_run(LATE_FAILURE, "failed", page=True) / "run"
     page = visit(folder / "report.html", width=1440, height=600).page

@@ -177,6 +177,7 @@ def test_lines_of_one_plot_differ_when_there_are_more_than_colours(visit, tmp_pa
     assert len(set(swatches)) == len(swatches) > 12
 
 
+@pytest.mark.nightly
 def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
     count = 60_001
     phase = np.linspace(0, 300, count)
@@ -237,7 +238,7 @@ def blue_cube(**changes):
     return make_run(objects=(table, cube), contact_forces=touching, **changes)
 
 
-@pytest.mark.nightly(but=["False-Table", "True-left_finger"])
+@pytest.mark.nightly(but=["True-left_finger"])
 @pytest.mark.parametrize("other", ["Table", "left_finger"])
 @pytest.mark.parametrize("is_collision", [False, True])
 def test_only_bodies_that_collide_change_their_colour(other, is_collision, visit, tmp_path):

@@ -128,7 +128,7 @@ def test_an_expression_has_the_value_that_python_gives_it(expression):
         assert has_views or (error is not None and not is_data), (value, error, expected, of_eval)
 
 
-@property_test(st.lists(PIECES, max_size=20), st.sampled_from(["", " "]), few=125, many=1000)
+@property_test(st.lists(PIECES, max_size=20), st.sampled_from(["", " "]), few=40, many=1000)
 def test_any_text_has_a_value_or_a_located_error(pieces, separator):
     text = separator.join(pieces)
     value, error = of_harness(text)

@@ -41,7 +41,7 @@ def disagreements(number, folder, counts):
             yield f"{number} ({kind}): {name}: {verdict}, not {opinion}: {reason}"
 
 
-@pytest.mark.nightly(but=["4", "2"])
+@pytest.mark.nightly(but=[2])
 @pytest.mark.parametrize("number", range(SAMPLE))
 def test_a_few_random_runs_are_judged_as_the_simple_judge_does(number, tmp_path):
     counts = Counter()

@@ -63,6 +63,7 @@ def names(done):
     return [line.split()[0] for line in done.stdout.splitlines()]
 
 
+@pytest.mark.nightly
 def test_the_wheel_holds_package_data_and_licence_and_nothing_else(wheel):
     inside = zipfile.ZipFile(wheel).namelist()
     tops = {name.split("/")[0] for name in inside}

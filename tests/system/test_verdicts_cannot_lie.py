@@ -45,6 +45,7 @@ def run_pick(folder, *, x=0.32, close=CLOSE, objects=""):
     return run_case(path, stills=False)
 
 
+@pytest.mark.nightly
 def test_a_real_pick_passes_both(tmp_path):
     result = run_pick(tmp_path)
     assert [verdict.status for verdict in result.verdicts] == ["passed", "passed"], result

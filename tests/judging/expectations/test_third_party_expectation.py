@@ -99,6 +99,7 @@ def harness(*commands, **options):
     return [(code, out + err) for code, out, err in answers]
 
 
+@pytest.mark.nightly
 def test_it_is_checked_explained_listed_and_in_the_schema(site, scenario):
     (checked, explained, listed, schema) = harness(
         ("check", scenario),

@@ -321,6 +321,7 @@ def test_a_hostile_name_stays_text_in_the_comment(folder):
     assert "\x07" not in text
 
 
+@pytest.mark.nightly
 def test_a_run_of_one_case_compares_its_margins(folder, capsys):
     scenario = folder / "one.scenario.yaml"
     scenario.write_text(

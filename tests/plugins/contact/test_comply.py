@@ -107,7 +107,7 @@ def test_a_free_motion_follows_its_path(tmp_path):
     assert np.array(yielded.largest_deviation[:3]) == pytest.approx(lag.max(axis=0), abs=1e-4)
 
 
-@pytest.mark.nightly(but=["x: 1000, z: 3000"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("axes", ["x: 1000", "x: 1000, z: 3000"])
 def test_the_axes_of_an_object_are_those_in_which_springs_act(tmp_path, axes):
     """A wall that is turned by 30 degrees: the spring along its normal alone gives way."""

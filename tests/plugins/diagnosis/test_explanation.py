@@ -161,7 +161,7 @@ def test_the_branches_of_a_ur_have_eight_names():
     assert over == "backwards, elbow up, wrist_2_joint < 0"
 
 
-@pytest.mark.nightly(but=[0])
+@pytest.mark.nightly
 @pytest.mark.parametrize("place", [(0.3, 0.0, 1.1), (0.2, 0.15, 1.15)])
 def test_branches_of_one_name_are_listed_with_their_joint_positions(place):
     cell = Cell(open_manipulator())

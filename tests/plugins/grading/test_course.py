@@ -189,7 +189,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-@pytest.mark.nightly(but=["course"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("command", ["course", "grade-class"])
 def test_the_course_and_a_class_of_scenarios_need_no_extra(here, command):
     main(["course", "start", "2", "class/work"])

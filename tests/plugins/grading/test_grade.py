@@ -240,7 +240,7 @@ def test_points_add_up_and_count_one_each_where_none_are_given():
 LESSONS = sorted((data_folder("scenarios") / "lessons").glob("*.scenario.yaml"))
 
 
-@pytest.mark.nightly(but=["04_gripper_alone"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda path: path.name.partition(".")[0])
 def test_a_lesson_loses_no_point_when_its_own_bag_is_graded(lesson, recorded_run, tmp_path):
     """What the bag shows is judged as in the run; contacts alone cannot be seen in it."""

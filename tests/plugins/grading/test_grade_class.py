@@ -209,7 +209,7 @@ def test_a_picture_says_what_failed_in_its_step_and_not_that_the_motion_passed(g
         assert (graded / "students/low" / link).is_file()
 
 
-@pytest.mark.nightly(but=[1])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "steps",
     [

@@ -238,7 +238,7 @@ def test_a_folder_for_gradescope_is_complete(tmp_path, capsys):
     assert "exists already" in capsys.readouterr().err
 
 
-@pytest.mark.nightly(but=["gradescope"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("system", ["gradescope", "classroom50"])
 def test_the_written_script_grades_a_submission(tmp_path, system):
     """The script as the system starts it, with this installation and other folders."""

@@ -81,6 +81,7 @@ def test_a_turn_that_ends_early_loses_its_points(exercise, tmp_path, capsys):
     assert said[-1] == "2 of 5 points"
 
 
+@pytest.mark.nightly
 def test_a_class_that_hands_in_tables_gets_points_and_pages_with_the_arm(exercise, tmp_path):
     """Speeds and efforts are not in the table; the page says so, and shows the arm's meshes."""
     text = "assignment: Turn\nrecording: {scenario: turn.scenario.yaml, csv_period: 10 ms}\n"

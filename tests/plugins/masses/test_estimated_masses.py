@@ -92,6 +92,7 @@ def test_an_arm_without_masses_moves(tmp_path):
     assert result.outcome == "passed", [step.message for step in result.steps]
 
 
+@pytest.mark.nightly
 def test_parts_that_overlap_weigh_no_more_than_the_hull(tmp_path):
     """Triangles without an inside, across a cube of 10 cm, as in some vendors' files."""
     rng = np.random.default_rng(1)

@@ -51,7 +51,7 @@ def test_a_goal_of_a_gripper_names_the_joint_that_follows_and_the_gripper_has_it
     assert replay(tmp_path / "run").digest == result.case.digest
 
 
-@pytest.mark.nightly(but=[0])
+@pytest.mark.nightly
 @pytest.mark.parametrize("robot", [ROBOT, UR])
 def test_a_trajectory_may_name_the_joints_that_follow(tmp_path, robot):
     with bridge(scenario(tmp_path, HOLD, robot=robot)) as (node, _):

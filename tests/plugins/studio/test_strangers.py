@@ -134,7 +134,7 @@ def test_requests_that_wait_are_bounded(serve):
         session.post(lambda: (is_busy.set(), is_free.wait(HANG)))
         assert is_busy.wait(HANG)
         for number in range(3 * STUDIO_REQUESTS):
-            page.send(json.dumps({"do": "reset", "number": number}))
+            page.send(json.dumps({"do": "nothing", "number": number}))
         heard = ""
         while "too many requests wait" not in heard:
             heard = str(page.recv())

@@ -78,7 +78,7 @@ def test_positions_fill_the_limits_and_stay_inside(chain):
         found = np.array(drawn(strategy))
         assert np.all(found >= chain.lower)
         assert np.all(found <= chain.upper)
-    everywhere = np.array(drawn(joint_positions(chain), 1500))
+    everywhere = np.array(drawn(joint_positions(chain), 500))
     share = (everywhere - chain.lower) / (chain.upper - chain.lower)
     for values in map(np.unique, share.T):  # Hypothesis repeats constants of whatever is imported
         assert np.quantile(values, 0.2) < 0.35
@@ -174,7 +174,7 @@ def test_what_needs_one_joint_shrinks_to_that_joint_at_its_threshold():
 
 
 def test_drawn_scenarios_are_valid(tmp_path):
-    for number, document in enumerate(drawn(scenarios(), 12)):
+    for number, document in enumerate(drawn(scenarios(), 5)):
         file = tmp_path / f"{number}.scenario.yaml"
         file.write_text(yaml.safe_dump(document), encoding="utf-8")
         assert not check_file(file).problems, document
