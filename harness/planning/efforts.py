@@ -15,8 +15,11 @@ from harness.core.details import Details
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.collision.collision_model import SceneObject
+from harness.planning.collision.native.library import call
 from harness.planning.model.robot_model import GroupSpace, RobotModel, pin_from_se3
 from harness.recording.motion_failures import OverloadFailure, TrajectoryFailure
+
+ROUNDING = 1e-9  # Share of a limit within which Pinocchio decides
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,20 +57,24 @@ class InverseDynamics:
         pin.rneaInParallel(1, pool, q.T, v.T, a.T, found.T)  # on one thread
         return found[:, columns] @ space.matrix
 
-    @property
-    def holds_anywhere(self) -> bool:
-        """Whether the limits exceed what gravity needs at most, however the arm stands."""
-        space = self._space
-        _, most = _loaded(space.robot, self.payloads)
-        needed = most[space.robot.velocity_columns] @ np.abs(space.matrix)
-        return bool(np.all(needed < self.limits))
+    def are_clearly_within(
+        self, share: float, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
+    ) -> bool:
+        """Whether efforts of states (N, dof) are surely within a share of the limits; fast."""
+        space, gravity = self._space, self._space.robot.model.gravity.linear
+        _, joints = _loaded(space.robot, self.payloads)
+        drive = space.matrix[np.argsort(space.robot.velocity_columns)]
+        states = np.array([positions, velocities, accelerations]) @ drive.T
+        states[0] += space.offset[np.argsort(space.robot.velocity_columns)]
+        efforts = call("efforts", (joints, gravity, states), np.empty_like(states[0])) @ drive
+        return bool(np.all(np.abs(efforts) <= self.limits * (share - ROUNDING)))
 
     def can_hold(self, positions: FloatArray) -> bool:
         """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
-        if self.holds_anywhere:
-            return True
         still = np.zeros_like(positions)
-        return bool(np.all(np.abs(self.efforts(positions, still, still)) <= self.limits))
+        return self.are_clearly_within(1.0, positions, still, still) or bool(
+            np.all(np.abs(self.efforts(positions, still, still)) <= self.limits)
+        )
 
     def standing_overload(
         self, positions: FloatArray, where: str = "on the way"
@@ -108,10 +115,7 @@ class InverseDynamics:
 def _loaded(
     robot: RobotModel, payloads: tuple[SceneObject, ...]
 ) -> tuple[pin.ModelPool, FloatArray]:
-    """The model with its payloads, and what each joint's effort against gravity is at most, (nv,).
-
-    Each body that a joint carries counts with its weight at the end of a straightened chain.
-    """
+    """The model with its payloads, and its joints as native/efforts.c reads them, (nv, 27)."""
     model, joints = robot.model.copy(), robot.description.joint_by_name
     for payload in payloads:
         assert payload.link is not None
@@ -119,13 +123,10 @@ def _loaded(
         placement = robot.placement(payload.link) @ payload.pose
         joint = robot.parent_joint(payload.link)
         model.appendBodyToJoint(joint, inertia, pin_from_se3(placement))
-    most, carried = np.zeros(model.nv), np.zeros((model.njoints, 2))  # moment, mass
-    for joint in range(model.njoints - 1, 0, -1):
-        known, body = joints[model.names[joint]], model.inertias[joint]
-        moment, mass = carried[joint] + (np.linalg.norm(body.lever) * body.mass, body.mass)
-        slides = known.kind == "prismatic"
-        most[model.joints[joint].idx_v] = mass if slides else moment
-        away = np.linalg.norm(model.jointPlacements[joint].translation)
-        away += max(abs(known.lower), abs(known.upper)) if slides else 0.0
-        carried[model.parents[joint]] += moment + away * mass, mass
-    return pin.ModelPool(model, 1), np.linalg.norm(model.gravity.linear) * most
+    rows: list[FloatArray] = []
+    for joint in range(1, model.njoints):
+        known, at = joints[model.names[joint]], model.jointPlacements[joint]
+        kind = [known.kind == "prismatic", model.parents[joint] - 1]
+        body = model.inertias[joint].toDynamicParameters()
+        rows.append(np.concatenate([at.rotation.ravel(), at.translation, known.axis, kind, body]))
+    return pin.ModelPool(model, 1), np.array(rows)

@@ -67,7 +67,7 @@ def test_velocities_are_the_derivative_of_positions(seed):
 def test_a_blended_path_stays_near_its_corners_and_on_its_lines():
     path = zigzag(3)
     blended = BlendedPath(path, 0.02)
-    positions, first, _ = blended.evaluate(np.linspace(0, blended.length, 2000))
+    positions, first, _ = blended.cubics.evaluate(np.linspace(0, blended.length, 2000))
     assert max(np.linalg.norm(positions - corner, axis=1).min() for corner in path) <= 0.02 + 1e-3
     assert np.abs(np.diff(first, axis=0)).max() < 0.2  # no jump of direction
     middle = 0.5 * (path[0] + path[1])

@@ -26,7 +26,7 @@ def library():
             self.path, self.dof, self.path_interval = path, dof, np.array([0.0, path.length])
 
         def __call__(self, parameters, order=0):
-            return self.path.evaluate(parameters)[order]
+            return self.path.cubics.evaluate(parameters)[order]
 
     class Known(toppra.constraint.LinearConstraint):
         """The bounds as the library takes them."""
@@ -62,7 +62,7 @@ def drawn(seed):
 def drawn_bounds(seed):
     """Bounds of joints, on some paths with efforts of a constant load and a collocated bound."""
     path, limits, grid = drawn(seed)
-    states = path.evaluate(grid)
+    states = path.cubics.evaluate(grid)
     bounds = [joint_bounds(states, limits)]
     rng = np.random.default_rng([seed, 1])
     if seed % 2:
@@ -112,10 +112,12 @@ def test_where_the_bounds_forbid_to_stand_still_there_are_no_times(standing):
     path, limits, grid = drawn(1)
     none = np.zeros((len(grid), 1))
     forbidding = Bounds(none + 0.01, none, none + standing, np.ones(1))
-    assert squared_rates([joint_bounds(path.evaluate(grid), limits), forbidding], grid) is None
+    assert (
+        squared_rates([joint_bounds(path.cubics.evaluate(grid), limits), forbidding], grid) is None
+    )
 
 
 def test_limits_without_times_are_an_error():
     path, limits, grid = drawn(1)
     with pytest.raises(TimingError, match="TOPP-RA found no times"):
-        fastest(path, replace(limits, acceleration=0 * limits.acceleration - 1.0), grid)
+        fastest(path.cubics, replace(limits, acceleration=0 * limits.acceleration - 1.0), grid)

@@ -16,7 +16,7 @@ from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.convex_tree import concatenate
-from harness.planning.collision.native.library import FULL, Certify
+from harness.planning.collision.native.library import FULL, Certify, address_of
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace, RobotModel
@@ -96,7 +96,7 @@ class MotionArrays:
         self._enter(3, self._found)
 
     def _enter(self, row: int, array: Array) -> None:
-        self.table[row, 0] = array.__array_interface__["data"][0]
+        self.table[row, 0] = address_of(array)
         self.table[row, 1 : 1 + array.ndim] = array.shape
 
 

@@ -88,10 +88,11 @@ class Limits:
         Raises:
             TimingError: Standing still takes too much effort already.
         """
-        if self.dynamics is None:
+        states = positions, velocities, accelerations
+        if self.dynamics is None or self.dynamics.are_clearly_within(1.0, *states):
             return 0.0
         limits = self.dynamics.limits
-        total = self.dynamics.efforts(positions, velocities, accelerations)
+        total = self.dynamics.efforts(*states)
         if np.all(np.abs(total) <= limits):
             return 0.0
         still = np.zeros_like(positions)

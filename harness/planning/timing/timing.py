@@ -67,13 +67,6 @@ class BlendedPath:
         domain = -np.inf, np.inf, _ROUNDING
         self.cubics = PiecewiseCubic(self.breaks, origins, coefficients, domain)
 
-    def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions and their first two derivatives, (M, dof) each, at parameters (M,).
-
-        Where the second derivative jumps, its value is the limit from above (at the end: below).
-        """
-        return self.cubics.evaluate(parameter)
-
     def grid(self) -> FloatArray:
         """Points for TOPP-RA: evenly on every line and blend, shape (M,)."""
         first, last = self.breaks[:-1], self.breaks[1:]
@@ -87,7 +80,7 @@ class BlendedPath:
         """Five positions of each blend, its ends included, shape (B, 5, dof)."""
         first, last = self.breaks[1:-1:2], self.breaks[2:-1:2]
         places = np.linspace(first, last, 5, axis=1)
-        return self.evaluate(places.ravel())[0].reshape(*places.shape, -1)
+        return self.cubics.evaluate(places.ravel())[0].reshape(*places.shape, -1)
 
 
 def _alternating(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -162,7 +155,7 @@ def time_blended(
     Raises:
         TimingError: TOPP-RA has no solution.
     """
-    curve, total = fastest(path, limits, path.grid())
+    curve, total = fastest(path.cubics, limits, path.grid())
     motion = joint_motion(curve, total)
     trajectory = sampled_within_limits(joint_names, motion, total, limits)
     trajectory.positions[[0, -1]] = path.ends

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
@@ -13,26 +12,9 @@ from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import Curve
 from harness.planning.timing.toppra_passes import Bounds, squared_rates
 
-UNLIMITED_EFFORT = 1e6  # Stands for no limit [N m or N]: the solver takes finite numbers
-
-
-class JointCurve(Protocol):
-    """A curve in joint space over a parameter from 0 to its length."""
-
-    length: float
-
-    @property
-    def cubics(self) -> PiecewiseCubic:
-        """The curve as a piecewise cubic."""
-        ...
-
-    def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions and their first two derivatives, (M, dof) each, at parameters (M,)."""
-        ...
-
 
 def fastest(
-    path: JointCurve, limits: Limits, grid: FloatArray, link_bounds: Bounds | None = None
+    path: PiecewiseCubic, limits: Limits, grid: FloatArray, link_bounds: Bounds | None = None
 ) -> tuple[Curve, float]:
     """The fastest motion along a path that keeps the limits at the grid points; its duration [s].
 
@@ -42,9 +24,7 @@ def fastest(
         TimingError: There is no solution.
     """
     states = path.evaluate(grid)
-    bounds = [joint_bounds(states, limits)]
-    if link_bounds is not None:
-        bounds.append(link_bounds)
+    bounds = [each for each in (joint_bounds(states, limits), link_bounds) if each is not None]
     rates = _rates(bounds, grid)
     positions, first, second = states
     growths = np.append(0.5 * np.diff(rates**2) / np.diff(grid), 0.0)[:, None]
@@ -64,14 +44,14 @@ def joint_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limi
 
 def _effort_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
     dynamics = limits.dynamics
-    if dynamics is None:
-        raise TimingError("the robot has no effort limits")
+    assert dynamics is not None
     positions, first, second = states
     still = np.zeros_like(positions)
     standing = dynamics.efforts(positions, still, still)
     speeds = dynamics.efforts(positions, still, first) - standing
     bends = dynamics.efforts(positions, first, second) - standing
-    return Bounds(speeds, bends, standing, np.minimum(dynamics.limits, UNLIMITED_EFFORT))
+    most = np.minimum(dynamics.limits, 1e6)  # [N m or N] the solver takes finite numbers
+    return Bounds(speeds, bends, standing, most)
 
 
 def _rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray:
@@ -81,9 +61,9 @@ def _rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray:
     return np.sqrt(squares)
 
 
-def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
+def _timed(path: PiecewiseCubic, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
     """The path with constant acceleration of its parameter on each step, and its duration."""
     steps = np.diff(grid)
     growths = 0.5 * np.diff(rates**2) / steps
     ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])
-    return lambda times: path.cubics.timed(times, (ends, grid, rates, growths)), float(ends[-1])
+    return lambda times: path.timed(times, (ends, grid, rates, growths)), float(ends[-1])

@@ -116,9 +116,9 @@ def distances_to_path(positions: FloatArray, waypoints: FloatArray) -> FloatArra
     for first, second in pairwise(waypoints):
         way = second - first
         shares = (positions - first) @ way / max(float(way @ way), 1e-18)
-        feet = first + np.clip(shares, 0.0, 1.0)[:, None] * way
-        nearest = np.minimum(nearest, np.linalg.norm(positions - feet, axis=1))
-    return nearest
+        away = positions - (first + np.clip(shares, 0.0, 1.0)[:, None] * way)
+        nearest = np.minimum(nearest, (away * away).sum(axis=1))
+    return np.sqrt(nearest)
 
 
 def _stamps(trajectory: JointTrajectory) -> Defect | None:
@@ -192,13 +192,12 @@ def _jerks(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
 
 
 def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
-    dynamics = limits.dynamics
-    if dynamics is None:
+    dynamics, share = limits.dynamics, 1 + EFFORT_TOLERANCE
+    states = trajectory.positions, trajectory.velocities, trajectory.accelerations
+    if dynamics is None or dynamics.are_clearly_within(share, *states):
         return None
-    efforts = dynamics.efforts(
-        trajectory.positions, trajectory.velocities, trajectory.accelerations
-    )
-    excess = np.abs(efforts) - dynamics.limits * (1 + EFFORT_TOLERANCE)
+    efforts = dynamics.efforts(*states)
+    excess = np.abs(efforts) - dynamics.limits * share
     row, joint = np.unravel_index(int(np.argmax(excess)), excess.shape)
     if excess[row, joint] <= 0:
         return None

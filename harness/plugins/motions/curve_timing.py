@@ -51,7 +51,7 @@ def time_curve(
         return resting(joint_names, spline.samples[0])
     grid = spline.grid()
     knots = np.minimum(np.searchsorted(spline.knots, grid, side="right") - 1, len(spline.knots) - 1)
-    timed, total = fastest(spline, limits, grid, _link_bounds(curve, space, grid, knots))
+    timed, total = fastest(spline.cubics, limits, grid, _link_bounds(curve, space, grid, knots))
     motion = joint_motion(timed, total)
     trajectory = sampled_within_limits(
         joint_names, motion, total, limits, lambda points: link_excess(curve, space, points)
