@@ -96,8 +96,8 @@ class SpecModel(BaseModel):
     some_of: ClassVar[tuple[str, ...]] = ()
     goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {}
 
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+    model_config = ConfigDict(  # built when first used, each with those in it: most never are
+        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True, defer_build=True
     )
 
     not_yet: ClassVar[Mapping[str, str]] = {}
