@@ -12,6 +12,7 @@ from pathlib import Path
 
 from harness.core.files import replaced, writing
 from harness.plugins.ci.document import read_document
+from harness.plugins.ci.gate import KEEP
 from harness.plugins.ci.suite_reporters.junit import SAMPLE
 from harness.recording.verdict import Verdict
 from harness.reporting.suite.record import SuiteCase
@@ -20,8 +21,6 @@ from harness.suite.header import read_header
 
 FORMAT = "armharness-margins/1"
 DEFAULT_FILE = "margins.json"
-KEEP = 0.5
-"""Share of an earlier margin that has to remain: half of the reserve may be lost unnoticed."""
 
 Margins = Mapping[str, Mapping[str, float]]
 """Name of a case -> expectation with its unit -> margin."""
@@ -107,8 +106,7 @@ def _gone(cases: Sequence[SuiteCase], baseline: Margins) -> Iterator[ShrunkMargi
     """Expectations of the baseline that are judged no more, though their case was run."""
     judged: dict[str, set[str]] = {}
     for case in cases:
-        names = judged.setdefault(_case_name(case), set())
-        names.update(map(_named, case.result.verdicts))
+        judged.setdefault(_case_name(case), set()).update(map(_named, case.result.verdicts))
     failed = {_case_name(case) for case in cases if case.result.outcome != "passed"}
     dropped = _dropped(cases, baseline)
     for name, margins in baseline.items():
@@ -146,10 +144,7 @@ def updated(cases: Sequence[SuiteCase], baseline: Margins) -> dict[str, dict[str
     Cases that failed or did not run keep their margins; those that are gone are left out.
     """
     passed: dict[str, dict[str, float]] = {}
-    failed = set[str]()
-    for case in cases:
-        if case.result.outcome != "passed":
-            failed.add(_case_name(case))
+    failed = {_case_name(case) for case in cases if case.result.outcome != "passed"}
     for name, key, verdict, _ in _margins(cases):
         least = passed.setdefault(name, {}).get(key, math.inf)
         passed[name][key] = min(least, verdict.margin)

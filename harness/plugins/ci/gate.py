@@ -6,27 +6,21 @@ import argparse
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from harness.cli.arguments import output_file, share_of_one
 from harness.cli.output import complain, output, say
 from harness.core.files import is_file, replaced, writing
 from harness.core.printable import counted
-from harness.plugins.ci.baseline import (
-    KEEP,
-    ShrunkMargin,
-    new_margins,
-    read_baseline,
-    shrunk_margins,
-    updated,
-    write_baseline,
-)
-from harness.plugins.ci.comment import comment_text, shrunk_table
-from harness.plugins.ci.ctrf import ctrf_text
-from harness.plugins.ci.github import annotation
-from harness.plugins.ci.results import SavedSuite, read_results
 from harness.suite.discovery import UsageError
 from harness.suite.folders import refuse_unwritable_file
 from harness.suite.outcome import EXIT_CODES
+
+if TYPE_CHECKING:  # the options of `harness run` need none of this
+    from harness.plugins.ci.baseline import ShrunkMargin
+    from harness.plugins.ci.results import SavedSuite
+
+KEEP = 0.5  # Share of an earlier margin that has to remain: half may be lost unnoticed
 
 
 def add_gate_options(command: argparse.ArgumentParser) -> None:
@@ -58,6 +52,8 @@ def is_requested(arguments: argparse.Namespace) -> bool:
     if arguments.update_baseline and not arguments.baseline:
         raise UsageError("--update-baseline goes with --baseline FILE, the file to write")
     if arguments.baseline and not (arguments.update_baseline and not is_file(baseline)):
+        from harness.plugins.ci.baseline import read_baseline
+
         read_baseline(baseline)
     if arguments.update_baseline:
         refuse_unwritable_file(baseline, "--baseline: ")
@@ -70,6 +66,10 @@ def gate(arguments: argparse.Namespace, folder: Path) -> int:
     Returns:
         The exit code: 1 where a margin shrank or is gone.
     """
+    from harness.plugins.ci.comment import comment_text, shrunk_table
+    from harness.plugins.ci.ctrf import ctrf_text
+    from harness.plugins.ci.results import read_results
+
     suite = read_results(folder)
     shrunk: Sequence[ShrunkMargin] = ()
     if arguments.baseline:
@@ -87,8 +87,13 @@ def gate(arguments: argparse.Namespace, folder: Path) -> int:
 
 def _compare(arguments: argparse.Namespace, suite: SavedSuite) -> Sequence[ShrunkMargin]:
     """Compare margins with the baseline, or write them into it."""
+    from harness.plugins.ci.baseline import new_margins, read_baseline, shrunk_margins
+    from harness.plugins.ci.github import annotation
+
     file = Path(arguments.baseline)
     if arguments.update_baseline:
+        from harness.plugins.ci.baseline import updated, write_baseline
+
         margins = updated(suite.cases, read_baseline(file) if file.is_file() else {})
         write_baseline(file, margins)
         say(f"wrote {counted(sum(map(len, margins.values())), 'margin')} into {file}")
