@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from PIL import Image
+from PIL import WebPImagePlugin as WebPImagePlugin  # otherwise Pillow imports all its formats
 
 Pixels = np.ndarray[Any, Any]
 """RGB, shape (height, width, 3), uint8, or one channel, shape (height, width), uint8 or uint16."""
