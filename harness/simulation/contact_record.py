@@ -20,11 +20,10 @@ BLOCK = 2**17  # Contacts that are sorted at a time
 AT_ONCE = 500  # Samples whose contacts are converted at once
 CONTACT = np.dtype("f8, 2i4, 3f4, 3f4, 3f4", align=True)
 CONTACT.names = "force", "geoms", "normal", "point", "friction"
+WORDS = CONTACT.itemsize // 8  # numpy takes rows of numbers ten times as fast as records
 
 BodyPair = tuple[str, str]
 Array = np.ndarray[Any, Any]
-
-_ROWS = np.arange(3)  # of a contact's forces: normal, then friction along the other two axes
 
 
 class ContactRecord:
@@ -38,7 +37,7 @@ class ContactRecord:
         self._physics = physics
         self._data = data
         self._end = np.zeros(ROWS, dtype=np.int64)
-        self._contacts = np.empty(ROWS * CONTACTS_PER_ROW, CONTACT)
+        self._contacts = np.empty((ROWS * CONTACTS_PER_ROW, WORDS))
         self._sleep = b""  # the state of sleep for which contacts of bodies asleep are known
         self._asleep = self._contacts[:0]
         self._copied: list[list[Array]] = []  # of the last samples, which are converted together
@@ -72,27 +71,29 @@ class ContactRecord:
         copied, self._copied = self._copied, []
         if not copied:
             return
-        geoms, points, axes, addresses, forces = map(np.concatenate, zip(*copied, strict=True))
-        counts, sizes = ([len(each[part]) for each in copied] for part in (3, 4))
-        # An inactive contact has no constraint rows and the address -1; it has no forces.
+        parts = [*zip(*copied, strict=True)]
+        geoms, points, axes, addresses, forces = map(np.concatenate, parts)
+        counts, sizes = ([*map(len, part)] for part in parts[3:])
+        # A contact's forces: normal, then friction along its other two axes. An inactive one has
+        # no constraint rows and the address -1; it has no forces.
         starts = addresses + np.repeat(np.cumsum(sizes) - sizes, counts)
         starts = np.where(addresses < 0, len(forces), starts)
-        pressed = np.append(forces, np.zeros(3)).take(starts[:, None] + _ROWS)
+        pressed = np.append(forces, np.zeros(3)).take(starts[:, None] + np.arange(3))
         friction = pressed[:, 1:2] * axes[:, 3:6]
         friction += pressed[:, 2:] * axes[:, 6:]
         found = np.empty(len(addresses), CONTACT)
         found["force"], found["friction"] = pressed[:, 0], friction
         found["geoms"], found["normal"], found["point"] = geoms, axes[:, :3], points
-        begin, row, samples = self._count, self._rows, len(copied)
-        sizes = np.column_stack([counts, np.full(samples, len(self._asleep))])
-        ends = begin + np.cumsum(sizes.sum(axis=1))
-        self._count, self._rows = int(ends[-1]), row + samples
+        begin, first, samples = self._count, self._rows, np.arange(len(copied))
+        rows = np.append(samples.repeat(counts), samples.repeat(len(self._asleep)))
+        ends = begin + np.bincount(rows, minlength=len(copied)).cumsum()
+        self._count, self._rows = int(ends[-1]), first + len(copied)
         self._end = enlarged(self._end, self._rows)
-        self._end[row:][:samples] = ends
+        self._end[first : self._rows] = ends
+        asleep = np.tile(self._asleep, (len(copied), 1))
+        found = np.concatenate([found.view(np.float64).reshape(-1, WORDS), asleep])
         self._contacts = enlarged(self._contacts, self._count)
-        is_awake = np.repeat(np.tile([True, False], samples), sizes.ravel())
-        self._contacts[begin : self._count][is_awake] = found
-        self._contacts[begin : self._count][~is_awake] = np.tile(self._asleep, samples)
+        self._contacts[begin : self._count] = found.take(rows.argsort(kind="stable"), axis=0)
 
     def _find_asleep(self) -> None:
         """Take the contacts of bodies asleep from the sample before."""
@@ -102,7 +103,7 @@ class ContactRecord:
         is_asleep = np.append(data.tree_asleep, -1) >= 0
         trees = model.body_treeid[model.geom_bodyid]  # -1, the last, for a static body
         before = self._contacts[self._begin(max(0, self._rows - 1)) : self._count]
-        self._asleep = before[is_asleep[trees[before["geoms"]]].any(axis=1)]
+        self._asleep = before[is_asleep[trees[before.view(CONTACT)["geoms"][:, 0]]].any(axis=1)]
 
     def _begin(self, row: int) -> int:
         """The first contact of a sample."""
@@ -205,7 +206,7 @@ class ContactRecord:
             if chosen.isdisjoint(pair) or not poses.keys() >= set(pair):
                 continue
             presses = (contacts["force"] > 0) & (rows > 0)
-            rows, contacts = rows[presses], contacts[presses]
+            rows, contacts = rows[presses], contacts.compress(presses)
             points, normals = contacts["point"], contacts["normal"]
             ways = [_way_of_points(poses[name], rows, points, surfaces.get(name)) for name in pair]
             way = np.nan_to_num(ways[0] - ways[1])
@@ -243,7 +244,8 @@ class ContactRecord:
             stop = max(row + 1, int(np.searchsorted(ends, begin + BLOCK, side="right")))
             rows = np.repeat(np.arange(row, stop), np.diff(ends[row:stop], prepend=begin))
             for numbers, places in self._sorted(begin, begin + len(rows)):
-                yield numbers, rows[places - begin], self._contacts[places]
+                found = self._contacts.take(places, axis=0).view(CONTACT)[:, 0]
+                yield numbers, rows[places - begin], found
             row = stop
 
     def _sorted(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
@@ -251,7 +253,8 @@ class ContactRecord:
         if begin == end:
             return
         size = self._physics.model.nbody
-        one, other = self._physics.model.geom_bodyid[self._contacts["geoms"][begin:end].T]
+        geoms = self._contacts[begin:end].view(CONTACT)["geoms"][:, 0].T
+        one, other = self._physics.model.geom_bodyid[geoms]
         codes = np.minimum(one, other) * size + np.maximum(one, other)
         codes = codes.astype(np.min_scalar_type(size * size))  # 16 bits are sorted in linear time
         order = np.argsort(codes, kind="stable")

@@ -83,7 +83,8 @@ class Recording:
         if steps <= 0:
             return
         first = self.count
-        self._reserve(first + steps)
+        for name in ("_qpos", "_qvel", "_sensors", "_commands", "_command_velocities"):
+            setattr(self, name, enlarged(getattr(self, name), first + steps))
         self._commands[first : first + steps] = commands
         self._command_velocities[first : first + steps] = command_velocities
         model, data = self._physics.model, self._data
@@ -166,10 +167,6 @@ class Recording:
         raise SimulationDiverged(
             f"the physics left the finite numbers near t={row * self.timestep:.3f} s"
         )
-
-    def _reserve(self, rows: int) -> None:
-        for name in ("_qpos", "_qvel", "_sensors", "_commands", "_command_velocities"):
-            setattr(self, name, enlarged(getattr(self, name), rows))
 
     @property
     def timestep(self) -> float:

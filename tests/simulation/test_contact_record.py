@@ -86,6 +86,7 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
 ):
     """Of a grid of boxes, with one that lies on two others and one under the gripper."""
     monkeypatch.setattr("harness.simulation.contact_record.BLOCK", block)
+    monkeypatch.setattr("harness.simulation.contact_record.AT_ONCE", 7)
     grid = [
         a_box(f"box {row} {column}", (0.1, 0.1, 0.05), (row, column, 0.0245), mass=0.3)
         for row in range(1, 5)
