@@ -116,6 +116,8 @@ def test_a_half_hidden_object_barely_passes_or_barely_does_not():
 def test_hue_is_a_range_that_may_go_through_zero():
     assert seen(Sees(camera="eye", color={"hue": ("340 deg", "20 deg")}), BALL).status == "passed"
     assert seen(Sees(camera="eye", color={"hue": ("20 deg", "340 deg")}), BALL).status == "failed"
+    for every_hue in (("0 deg", "360 deg"), ("-20 deg", "340 deg"), ("-180 deg", "180 deg")):
+        assert seen(Sees(camera="eye", color={"hue": every_hue}), BALL).status == "passed"
     grey = replace(BALL, shapes=(replace(BALL.shapes[0], rgba=(0.5, 0.48, 0.48, 1.0)),))
     assert seen(Sees(camera="eye", color="red"), grey).status == "failed"
 
@@ -194,6 +196,8 @@ def test_a_picture_of_earlier_says_nothing_of_the_end():
         ({"object": "a", "marker": 1}, "exactly one of `object`, `color` and `marker`"),
         ({"marker": 50}, "markers 0 to 49, not 50"),
         ({"color": {"min_value": 0.1}}, "exactly one of `named` and `hue`"),
+        ({"color": {"hue": (340, 20)}}, "less than or equal to 6.28"),
+        ({"color": {"hue": ("10 deg", "10 deg")}}, "ends where it begins"),
         ({"color": "red", "min_visible": 0.3}, "`min_visible` goes with `object`"),
     ],
 )

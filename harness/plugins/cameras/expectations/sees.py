@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from harness.cell.scope import At
 from harness.core.extras import absent_package
@@ -40,6 +40,8 @@ HUES: dict[ColorName, tuple[float, float]] = {
 }
 """From, to on the colour circle [deg]."""
 
+Hue = Annotated[Angle, Field(ge=-2 * math.pi, le=2 * math.pi)]
+
 PIXELS = Quantity("pixels", "px", "at least `min_area`")
 LEAST_OPACITY = 0.1  # of an object that a picture can show
 LEAST_PICTURES = 3  # of a window; the verdict of fewer has a warning
@@ -59,10 +61,10 @@ class HueRange(SpecModel):
         + ". They contain the colours that objects have by these names, but for `pink`, which is a"
         " pale red there (hue 350, saturation 0.25).",
     )
-    hue: tuple[Angle, Angle] | None = Field(
+    hue: tuple[Hue, Hue] | None = Field(
         default=None,
         description="The first and the last hue on the colour circle, where 0 is red, 120 deg green"
-        " and 240 deg blue; `[340 deg, 20 deg]` goes through 0.",
+        " and 240 deg blue; `[340 deg, 20 deg]` goes through 0, `[0 deg, 360 deg]` is every hue.",
     )
     min_saturation: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=0.4, description="The smallest saturation; 0 is grey, 1 the pure colour."
@@ -71,13 +73,22 @@ class HueRange(SpecModel):
         default=0.15, description="The smallest brightness; 0 is black, 1 the brightest."
     )
 
+    @field_validator("hue")
+    @classmethod
+    def _is_range(cls, value: tuple[Hue, Hue] | None) -> tuple[Hue, Hue] | None:
+        if value is not None and value[0] == value[1]:
+            raise ValueError("a range of hues that ends where it begins has no pixel")
+        return value
+
     def degrees(self) -> tuple[float, float]:
-        """The first and the last hue [deg], in [0, 360)."""
+        """The first and the last hue [deg], in [0, 360]."""
         if self.named is not None:
             return HUES[self.named]
         assert self.hue is not None  # the model has exactly one of them
-        low, high = np.degrees(self.hue) % 360.0
-        return float(low), float(high)
+        low, high = np.degrees(self.hue)
+        return (
+            (0.0, 360.0) if high - low > 360.0 - 1e-9 else (float(low % 360.0), float(high % 360.0))
+        )
 
 
 class Sees(Predicate):
