@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import os
 import platform
 import shutil
@@ -15,9 +14,8 @@ from harness.reporting.html import bundle
 from harness.reporting.html.packing import Packer
 from harness.reporting.sampled import missed, rate_text
 from harness.reporting.suite.columns import Columns
-from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.history import History
-from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.record import SuiteRecord
 from harness.reporting.suite.rows import row_facts
 from harness.reporting.suite.section import sections
 from harness.reporting.terminal import OUTCOMES
@@ -25,7 +23,6 @@ from harness.reporting.terminal import OUTCOMES
 FOLDER = Path(__file__).with_name("page")
 MOST_ROWS = 10_000  # cases that the page lists
 MOST_PLAIN_ROWS = 200  # where scripts are blocked
-REPLAY_WIDTH = 480  # [pixels]
 
 
 def suite_html(
@@ -50,17 +47,13 @@ def suite_html(
         style=bundle.theme() + (FOLDER / "suite.css").read_text(encoding="utf-8"),
         record=record,
         title=record.title or "; ".join(filter(None, (passed, missed(record.rates)))),
-        failing_changes=[
-            (each, [_replay(*replay, folder) for replay in each.replays])
-            for each in record.failing_changes
-        ],
         outcomes=[(name, outcomes[name]) for name in reversed(OUTCOMES) if outcomes[name]],
         causes=columns.causes.most_common(),
         rates=[
             (each, each.rate, rate_text("", each.rate).partition(": ")[2])
             for each in sorted(record.rates, key=lambda each: each.outcome == "passed")
         ],
-        **{"campaign": None, **sections(columns, record.cases, folder)},
+        **{"campaign": None, "failing_changes": (), **sections(record, columns, folder)},
         is_campaign=len(columns.numbers) + outcomes["invalid"] == total,
         plain=[(c := record.cases[i], c.address(folder)) for i in urgent[:MOST_PLAIN_ROWS]],
         data=packer.text({"rows": [rows[i] for i in sorted(rows)], "history": bool(history)}),
@@ -70,13 +63,6 @@ def suite_html(
         made=made(),
         unlisted=total - len(rows),
     )
-
-
-def _replay(name: str, case: SuiteCase, folder: Path) -> dict[str, str]:
-    """A run next to another one: its name, its page at the deciding moment, and a picture."""
-    link, picture = case.address(folder), deciding_picture(case.result, REPLAY_WIDTH) or b""
-    shown = {"link": link, "picture": base64.b64encode(picture).decode()}
-    return {"name": name, "outcome": case.result.outcome, **shown}
 
 
 def made() -> list[str]:

@@ -75,25 +75,6 @@ class SuiteCase:
 
 
 @dataclass(frozen=True)
-class FailingChange:
-    """A change of a scenario with which it fails.
-
-    Attributes:
-        changes: Path, value in the file and value with which it fails, of each parameter, and where
-            both stand in its range, from 0 to 1; None of words.
-        cause: Why it fails, in a line.
-        again: The command that shows it.
-        replays: What each run is, and its case: the file as it is, and the changed one.
-    """
-
-    changes: Sequence[tuple[str, Any, Any, tuple[float, float] | None]]
-    cause: str
-    again: str
-    runs: int
-    replays: Sequence[tuple[str, SuiteCase]]
-
-
-@dataclass(frozen=True)
 class SuiteRecord:
     """Everything that a suite's files are written from.
 
@@ -103,7 +84,7 @@ class SuiteRecord:
         is_interrupted: Whether Ctrl-C ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
         title: What the page is called instead of the number of cases that passed.
-        failing_changes: What a search found, the smallest change first.
+        failing_changes: What a search found, which a section of a plug-in shows.
         tried: What the search did, a sentence each.
         progress: The number of runs that are done while the suite runs; empty when it has ended.
         wall: Wall time from the first case to the last [s]; 0 where it is not known.
@@ -115,7 +96,7 @@ class SuiteRecord:
     is_interrupted: bool = False
     missing_parts: Sequence[str] = ()
     title: str = ""
-    failing_changes: Sequence[FailingChange] = ()
+    failing_changes: Sequence[Any] = ()
     tried: Sequence[str] = ()
     progress: str = ""
     wall: float = 0.0

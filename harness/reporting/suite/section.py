@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
 from harness.core.registry import Plugin, registry
 from harness.reporting.suite.columns import Columns
-from harness.reporting.suite.record import SuiteCase
+from harness.reporting.suite.record import SuiteRecord
 
 
 class SuiteSection(Plugin, ABC):
@@ -18,7 +17,7 @@ class SuiteSection(Plugin, ABC):
     plugin_kind: ClassVar[str] = "suite_section"
 
     @abstractmethod
-    def content(self, columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> Any:
+    def content(self, record: SuiteRecord, columns: Columns, folder: Path) -> Any:
         """What the template shows; None leaves the section out.
 
         Args:
@@ -26,7 +25,7 @@ class SuiteSection(Plugin, ABC):
         """
 
 
-def sections(columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> dict[str, Any]:
+def sections(record: SuiteRecord, columns: Columns, folder: Path) -> dict[str, Any]:
     """The content of each built-in section by its name."""
     known = registry(SuiteSection.plugin_kind)
-    return {name: known[name]().content(columns, cases, folder) for name in known.built_in_modules}
+    return {name: known[name]().content(record, columns, folder) for name in known.built_in_modules}

@@ -14,12 +14,13 @@ from harness.language.reading.load import load_scenario
 from harness.language.reading.resolve import resolved_text
 from harness.language.reading.written import as_written
 from harness.plugins.campaigns.failure_search.evaluator import Sample
+from harness.plugins.campaigns.failure_search.failing_change import FailingChange
 from harness.plugins.campaigns.failure_search.search import Failure, SearchResult
 from harness.plugins.campaigns.failure_search.space import Parameter
 from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult
 from harness.reporting.suite.cause import cause_of
-from harness.reporting.suite.record import FailingChange, SuiteCase, SuiteRecord
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite_page
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated

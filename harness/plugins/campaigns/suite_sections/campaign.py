@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
 from harness.reporting.suite.columns import Columns
-from harness.reporting.suite.record import SuiteCase
+from harness.reporting.suite.record import SuiteRecord
 from harness.reporting.suite.section import SuiteSection
 
 
@@ -16,8 +15,8 @@ class CampaignSection(SuiteSection):
 
     name: ClassVar[str] = "campaign"
 
-    def content(self, columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> Any:
+    def content(self, record: SuiteRecord, columns: Columns, folder: Path) -> Any:
         """The map, the margins and the sensitivities."""
         from harness.plugins.campaigns.effects.campaign import campaign_of
 
-        return campaign_of(columns, cases, folder)
+        return campaign_of(columns, record.cases, folder)
