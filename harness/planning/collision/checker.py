@@ -16,7 +16,6 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
-from harness.planning.collision.approximation import approximation_note
 from harness.planning.collision.certificates import MotionArrays, motion_arrays
 from harness.planning.collision.native.library import certify
 from harness.planning.collision.sampled_motion import SampledMotion
@@ -85,8 +84,7 @@ class MotionChecker:
         if deep:
             raise PlanningFailed(
                 "START_STATE_IN_COLLISION",
-                f"the robot starts in collision: {wording.touches(deep)}"
-                + approximation_note(deep, self.scene),
+                f"the robot starts in collision: {wording.touches(deep)}",
                 CollisionFailure(touch_records(deep)),
             )
         for index, touch in near:

@@ -11,7 +11,6 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.registry import described
 from harness.core.types import FloatArray
-from harness.planning.collision.approximation import approximation_note
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.collision.wording import (
     angle,
@@ -73,8 +72,7 @@ def find_goals(
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
             f"{goal.link} reaches {point(target_of(goal))} in world in {ways},"
-            f" {each} in collision; the nearest: {touches(nearest)}"
-            f"{approximation_note(nearest, checker.scene)}",
+            f" {each} in collision; the nearest: {touches(nearest)}",
             study.record,
         )
     return GoalCandidates(free, Details.of(study.record))
@@ -97,8 +95,7 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
         found = checker.touches(positions)
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
-            f"at the goal's joint positions these are in collision: {touches(found)}"
-            + approximation_note(found, checker.scene),
+            f"at the goal's joint positions these are in collision: {touches(found)}",
             CollisionFailure(touch_records(found)),
         )
     return GoalCandidates((positions,), Details())

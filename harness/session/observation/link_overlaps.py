@@ -10,7 +10,6 @@ import numpy as np
 from harness.core.kinematics import LinkPoses
 from harness.core.types import FloatArray, Pair
 from harness.planning.model.robot_model import RobotModel
-from harness.recording.run import Finding
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.session.observation.body_tracks import (
@@ -108,22 +107,3 @@ def _shape_pairs(
 ) -> list[ShapePair]:
     one, other = (MovingBody(shapes[name], link_track(poses, name)) for name in (first, second))
     return pairs_between([one], other, cutoff)
-
-
-def link_overlap_findings(signals: Signals) -> tuple[Finding, ...]:
-    """Links that were inside each other, and that the SRDF excludes from collision checking."""
-    found: list[Finding] = []
-    for (first, second), depth in signals.link_overlaps.items():
-        deepest = int(np.argmax(depth))
-        time = float(signals.times[deepest])
-        found.append(
-            Finding(
-                "link_overlap",
-                f"{first} and {second}, which the SRDF excludes from collision checking, were"
-                f" {1e3 * depth[deepest]:.1f} mm inside each other; with every joint at zero they"
-                " are apart: enable the pair, or expect `collision` with `count_allowed`",
-                time,
-                values={"pair": [first, second], "depth": float(depth[deepest])},
-            )
-        )
-    return tuple(found)

@@ -37,7 +37,6 @@ def observed_signals(prepared: Prepared, run: Run) -> Signals:
 def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Finding, ...]:
     """The findings that only a report shows."""
     from harness.session.observation.clearance import CoalClearance
-    from harness.session.observation.link_overlaps import link_overlap_findings
 
     description, cutoff = prepared.program.description, signals.clearance_cutoff
     observer = CoalClearance(description)
@@ -49,7 +48,6 @@ def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Fin
             motion, run.objects, run.attachments, cutoff, pairs
         ),
     )
-    overlaps = link_overlap_findings(signals)
-    observers = registry(Observer.plugin_kind).values()
-    found = chain.from_iterable(each().report(run, prepared.program) for each in observers)
-    return (*found, *overlaps, *differences)
+    measured, observers = replace(run, signals=signals), registry(Observer.plugin_kind).values()
+    found = chain.from_iterable(each().report(measured, prepared.program) for each in observers)
+    return (*found, *differences)

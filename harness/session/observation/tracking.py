@@ -12,7 +12,7 @@ from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray, Pair
 from harness.judging.drift import drift_in_hand
 from harness.judging.hold import held_by_fingers
-from harness.judging.joints import gripper_joints
+from harness.judging.joints import hand_joints
 from harness.judging.window import NotObservable, NotReached
 from harness.ports.kinematics import Kinematics
 from harness.recording.motion import Motion
@@ -47,7 +47,7 @@ def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
     Fingers stay where they were: one that presses lags its command.
     """
     signals, joints = run.signals, run.robot.movable_joints
-    hand = gripper_joints(run)
+    hand = hand_joints(run.robot)
     follows = np.array([joint.name not in hand for joint in joints])
     is_commanded = np.isfinite(signals.joint_commands) & follows
     positions = np.where(is_commanded, signals.joint_commands, signals.joint_positions)

@@ -13,11 +13,11 @@ from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.judging.expectations.duration import DurationCheck
 from harness.plugins.remarks.observers.looks import looks_differ
+from harness.plugins.remarks.observers.physics import link_overlap_findings
 from harness.plugins.remarks.observers.steps import findings_of
 from harness.ports.scene import Touch
 from harness.session.observation.beliefs import believed_poses
 from harness.session.observation.findings import about_file, overlap_findings
-from harness.session.observation.link_overlaps import link_overlap_findings
 from tests.judging.synthetic_run import BOX, heights, make_run, step
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -19,6 +20,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
 from harness.plugins.diagnosis.advice import advice
 from harness.plugins.diagnosis.branch_stage import branches_finding
+from harness.plugins.diagnosis.mesh_note import mesh_note
 from harness.plugins.diagnosis.motion_stages import path_finding, start_finding, timing_finding
 from harness.plugins.diagnosis.reach_stage import reach_finding
 from harness.plugins.diagnosis.stage_request import StageFinding, StageRequest
@@ -128,4 +130,11 @@ def explanation_of(request: StageRequest) -> Explanation:
         findings.insert(0, start)
     nearest = next((finding.nearest for finding in findings if finding.nearest), None)
     advice = next((finding.advice for finding in findings if finding.advice), None)
+    touches = (nearest and nearest.touches) or ()
+    if note := mesh_note(touches, request.options.padding, request.scene):
+        failed = next((stage for stage in stages if stage.status == "failed"), None)
+        stages = tuple(
+            replace(stage, details=(*stage.details, note)) if stage is failed else stage
+            for stage in stages
+        )
     return Explanation(stages, nearest, advice)

@@ -1,4 +1,4 @@
-"""How far joints were from their commands, and pairs that touched because they may."""
+"""Joints far from their commands, and pairs that touched or overlapped because they may."""
 
 from __future__ import annotations
 
@@ -9,20 +9,22 @@ import numpy as np
 from harness.cell.program import Program
 from harness.core.amounts import amount
 from harness.core.types import Pair
-from harness.judging.joints import gripper_joints
+from harness.judging.joints import hand_joints
 from harness.recording.run import Finding, Run
+from harness.recording.signals import Signals
 from harness.recording.step_results import AllowedCollisions
 from harness.session.observation.observer import Observer
 
 
 class Physics(Observer):
-    """The joint that lagged most, and contacts that the SRDF or `allow_collisions` permits."""
+    """The joint that lagged most, and contacts and overlaps that the robot's files permit."""
 
     name: ClassVar[str] = "physics"
 
     def report(self, run: Run, program: Program) -> tuple[Finding, ...]:
         del program
-        return (*tracking_finding(run), *allowed_contacts(run))
+        overlaps = link_overlap_findings(run.signals)
+        return (*overlaps, *tracking_finding(run), *allowed_contacts(run))
 
 
 def tracking_finding(run: Run) -> tuple[Finding, ...]:
@@ -30,7 +32,7 @@ def tracking_finding(run: Run) -> tuple[Finding, ...]:
     signals = run.signals
     errors = np.abs(signals.joint_positions - signals.joint_commands)
     errors = np.where(np.isfinite(errors), errors, 0.0)
-    hand = gripper_joints(run)
+    hand = hand_joints(run.robot)
     for column, joint in enumerate(run.robot.movable_joints):
         if joint.name in hand:
             errors[:, column] = 0.0  # a gripper that presses lags its command
@@ -89,3 +91,22 @@ def _allowances(run: Run, pair: Pair) -> list[tuple[str, np.ndarray]]:
                 during = (times >= step.start_time) & (times <= step.end_time)
                 allowances.append((f"step {step.title}", during))
     return allowances
+
+
+def link_overlap_findings(signals: Signals) -> tuple[Finding, ...]:
+    """Links that were inside each other, and that the SRDF excludes from collision checking."""
+    found: list[Finding] = []
+    for (first, second), depth in signals.link_overlaps.items():
+        deepest = int(np.argmax(depth))
+        time = float(signals.times[deepest])
+        found.append(
+            Finding(
+                "link_overlap",
+                f"{first} and {second}, which the SRDF excludes from collision checking, were"
+                f" {1e3 * depth[deepest]:.1f} mm inside each other; with every joint at zero they"
+                " are apart: enable the pair, or expect `collision` with `count_allowed`",
+                time,
+                values={"pair": [first, second], "depth": float(depth[deepest])},
+            )
+        )
+    return tuple(found)

@@ -7,21 +7,21 @@ from collections.abc import Sequence
 from harness.core.geometry import Mesh, Shape
 from harness.planning.collision.scene import CoalScene
 from harness.planning.collision.wording import length_text
-from harness.ports.scene import Touch
+from harness.recording.goal_failures import TouchRecord
 from harness.robot.mesh_file import decomposition_of
 
 
-def approximation_note(touches: Sequence[Touch], scene: CoalScene) -> str:
-    """A clause on the first pair that may be farther apart as meshes; empty where none can be.
+def mesh_note(touches: Sequence[TouchRecord], padding: float, scene: CoalScene) -> str:
+    """A sentence on the first pair that may be farther apart as meshes; empty where none can be.
 
     A pair may be so where its shapes reach farther beyond their meshes than they are too near.
     """
     for touch in touches:
-        bodies = [(name, scene.shapes_of(name)) for name in (touch.first, touch.second)]
+        bodies = [(name, scene.shapes_of(name)) for name in touch.pair]
         excess = {name: _excess(shapes) for name, shapes in bodies}
-        if sum(excess.values()) > max(touch.required, 0.0) - touch.distance:
+        if sum(excess.values()) > padding - touch.distance:
             said = [_said(name, shapes) for name, shapes in bodies if excess[name]]
-            return f"; this may be due to the shapes that stand for meshes: {', '.join(said)}"
+            return f"this may be due to the shapes that stand for meshes: {', '.join(said)}"
     return ""
 
 
