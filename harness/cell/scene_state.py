@@ -17,6 +17,7 @@ from harness.language.poses import Direction, Pose
 from harness.ports.kinematics import Kinematics
 from harness.ports.scene import PlanningScene
 from harness.ports.simulation import Simulator
+from harness.recording.run import ObjectRecord
 from harness.recording.step_results import CELL_RESULTS, SceneChange
 from harness.robot.description import RobotDescription
 from harness.robot.end_effector import Gripper
@@ -35,6 +36,11 @@ class Presence:
     def is_there(self) -> bool:
         """Whether it is in the scene now."""
         return bool(self.intervals) and self.intervals[-1][1] == float("inf")
+
+    def record(self, time: float) -> ObjectRecord:
+        """The object as verdicts and reports need it, with when it was there up to a time [s]."""
+        present = tuple((start, min(end, time)) for start, end in self.intervals)
+        return ObjectRecord.of(self.obj, present, self.pose)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import balls_of
 from harness.judging.facts import fact
 from harness.judging.hands import every_hand_link, gripper_of, own_links
-from harness.judging.poses import arrivals, present
-from harness.judging.temporal import last_within, trailing_max, without_gaps
+from harness.judging.poses import present
+from harness.judging.temporal import trailing_max, without_gaps
 from harness.judging.window import NotObservable, object_record, put_samples
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
@@ -45,18 +45,6 @@ def force_between(run: Run, firsts: Collection[str], seconds: Collection[str]) -
 def debounced(run: Run, force: FloatArray) -> FloatArray:
     """Largest force of the last `DEBOUNCE` seconds [N], shape (N,)."""
     return trailing_max(force, run.signals.times, DEBOUNCE)
-
-
-def settled(run: Run, holds: BoolArray, names: Collection[str]) -> BoolArray:
-    """Samples that count of a contact between bodies: not those in which it is about to begin.
-
-    Bodies that are put where they touch exactly press each other some milliseconds later.
-    """
-    counts, last = np.ones(len(holds), dtype=bool), last_within(run.signals.times, DEBOUNCE)
-    for name in {each.name for each in run.objects} & {*names}:
-        for start in (0, *arrivals(run, name)):
-            counts[start : start + int(holds[start : last[start] + 1].argmax())] = False
-    return counts
 
 
 def touched(run: Run, name: str, but: Collection[str] = ()) -> list[str]:

@@ -12,7 +12,7 @@ from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation, as_expectation, check_expectation
 from harness.language.expectation import ExpectationFields
 from harness.ports.simulation import RecordingSimulator
-from harness.recording.run import ObjectRecord, Run
+from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 
 
@@ -58,21 +58,13 @@ def _run_from(
     first: int, steps: tuple[StepRecord, ...], cell: Cell, simulator: RecordingSimulator
 ) -> Run:
     """What the simulator has recorded from a sample on."""
-    objects = (
-        ObjectRecord.of(
-            presence.obj,
-            tuple((start, min(end, simulator.time)) for start, end in presence.intervals),
-            presence.pose,
-        )
-        for presence in cell.presence.values()
-    )
     return Run(
         scenario="",
         file="",
         case="",
         seed=0,
         robot=cell.description,
-        objects=tuple(objects),
+        objects=tuple(each.record(simulator.time) for each in cell.presence.values()),
         attachments=tuple(cell.attachments),
         steps=steps,
         signals=simulator.finish(first),

@@ -305,10 +305,6 @@ class TemporalWord(Expectation, TemporalFields):
 
     predicate: InnerPredicate = Field(description="The predicate that is judged.")
 
-    def needs_step(self) -> str:
-        """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
-        return ""
-
     def predicates(self) -> Mapping[str, Predicate]:
         return {"predicate": self.predicate}
 

@@ -8,7 +8,6 @@ from contextvars import ContextVar
 from functools import wraps
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
-from harness.core.types import FloatArray, IntArray
 from harness.recording.run import Run
 
 P = ParamSpec("P")
@@ -47,23 +46,5 @@ def fact(function: Callable[Concatenate[Run, P], T]) -> Callable[Concatenate[Run
         if key not in facts:
             facts[key] = function(run, *args, **kwargs)
         return facts[key]
-
-    return remembered
-
-
-def of_times(
-    function: Callable[[FloatArray, float], IntArray],
-) -> Callable[[FloatArray, float], IntArray]:
-    """Make a function of the times of a run and a time remember its results, as `fact` does."""
-
-    @wraps(function)
-    def remembered(times: FloatArray, span: float) -> IntArray:
-        facts = _facts.get()
-        if facts is None:
-            return function(times, span)
-        key = function, id(times), span
-        if key not in facts:
-            facts[key] = times, function(times, span)  # no other array has this id from now on
-        return facts[key][1]
 
     return remembered

@@ -70,11 +70,6 @@ def joint_column(run: Run, name: str) -> tuple[int, Joint]:
     raise NotObservable(f"there is no joint '{name}' in this run")
 
 
-def gripper_joints(run: Run) -> frozenset[str]:
-    """Joints of the grippers' groups, and those that follow them."""
-    return hand_joints(run.robot)
-
-
 def hand_joints(robot: RobotDescription) -> frozenset[str]:
     """Joints of the grippers' groups, and those that follow them."""
     if not robot.grippers:
@@ -86,7 +81,7 @@ def hand_joints(robot: RobotDescription) -> frozenset[str]:
 
 def stood_still(run: Run) -> bool:
     """Whether no joint moved; of a run that ended early, no joint of the arm."""
-    spared = gripper_joints(run) if run.ended_early else frozenset[str]()
+    spared = hand_joints(run.robot) if run.ended_early else frozenset[str]()
     positions = run.signals.joint_positions
     columns = [
         positions[:, column]
@@ -99,7 +94,7 @@ def stood_still(run: Run) -> bool:
 
 def resting_joints(run: Run) -> frozenset[str]:
     """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
-    names = gripper_joints(run) | {
+    names = hand_joints(run.robot) | {
         joint.name for joint in run.robot.movable_joints if joint.is_mimic
     }
     if "joint_commands" in run.unrecorded:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.judging.facts import of_times
 from harness.recording.run import TIME_RESOLUTION
 
 BRIDGE = 0.1  # gaps under this time end neither a contact between objects nor a hold [s]
@@ -63,13 +62,11 @@ def range_min(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray
     return result
 
 
-@of_times
 def first_within(times: FloatArray, span: float) -> IntArray:
     """The first of the samples of the last `span` seconds at each sample, itself included."""
     return np.searchsorted(times, times - span - TIME_RESOLUTION)
 
 
-@of_times
 def last_within(times: FloatArray, span: float) -> IntArray:
     """The last of the samples of the next `span` seconds at each sample, itself included."""
     return np.searchsorted(times, times + span + TIME_RESOLUTION, side="right") - 1

@@ -181,7 +181,7 @@ class ProgramExecution:
         presences = cell.presence.values()
         return Execution(
             steps=_with_unreached(self.program, self.records, cell.simulator),
-            objects=tuple(object_record(presence, cell.simulator.time) for presence in presences),
+            objects=tuple(presence.record(cell.simulator.time) for presence in presences),
             attachments=tuple(cell.attachments),
             beliefs=cell.beliefs,
             ended_early=self.ended_early,
@@ -255,9 +255,3 @@ def _with_unreached(
         if step.path not in reached
     ]
     return (*records, *unreached)
-
-
-def object_record(presence: Presence, time: float) -> ObjectRecord:
-    """An object as verdicts and reports need it, with when it was there up to a time [s]."""
-    present = tuple((start, min(end, time)) for start, end in presence.intervals)
-    return ObjectRecord.of(presence.obj, present, presence.pose)

@@ -13,7 +13,7 @@ from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
 from harness.judging.expectations.upright import Upright
-from harness.judging.joints import gripper_joints, is_measured, near, resting_joints
+from harness.judging.joints import hand_joints, is_measured, near, resting_joints
 from harness.judging.window import (
     NotObservable,
     NotReached,
@@ -216,11 +216,11 @@ def test_joints_that_may_rest_are_the_grippers_its_followers_and_idle_ones():
     commands = run.signals.joint_commands.copy()
     commands[:, 3] = np.arange(20)
     run = changed(run, joint_commands=commands)
-    assert gripper_joints(run) == {"finger", "mimic"}
+    assert hand_joints(run.robot) == {"finger", "mimic"}
     assert resting_joints(run) == {"finger", "mimic", "idle"}
     assert resting_joints(replace(run, unrecorded=("joint_commands",))) == {"finger", "mimic"}
     bare = replace(run, robot=replace(robot, gripper=None))
-    assert gripper_joints(bare) == frozenset()
+    assert hand_joints(bare.robot) == frozenset()
     assert resting_joints(bare) == {"finger", "mimic", "idle"} - (
         {"finger"} if (commands[:, 1] != commands[0, 1]).any() else set()
     )

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from harness.core.amounts import amounts
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
-from harness.judging.joints import ROUNDING, gripper_joints, is_measured, resting_joints
+from harness.judging.joints import ROUNDING, hand_joints, is_measured, resting_joints
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
 from harness.language.base import Flag
@@ -81,7 +81,7 @@ class WithinLimits(Predicate):
     def signal(self, window: Window) -> MarginSignal:
         """Positions, velocities, efforts and commanded accelerations, as shares of their limits."""
         parts: list[Part] = []
-        hand, resting = gripper_joints(window.run), resting_joints(window.run)
+        hand, resting = hand_joints(window.run.robot), resting_joints(window.run)
         for column, joint in enumerate(window.run.robot.movable_joints):
             if joint.is_mimic:  # it has no motor: its limits narrow those of the joint it follows
                 continue

@@ -71,14 +71,6 @@ class Trace:
         """Whether nothing stopped it."""
         return self.failure is None
 
-    @property
-    def largest_step(self) -> float:
-        """Farthest that a joint moves within one step [rad or m]."""
-        stride = min(self.stride, len(self.positions) - 1)
-        if stride < 1:
-            return 0.0
-        return float(np.abs(self.positions[stride:] - self.positions[:-stride]).max())
-
 
 def trace(
     path: LinkPath,

@@ -115,7 +115,7 @@ def _follow(
             pose = motions.pose(traced.positions[-1], line.link)
         name = f"the line to waypoint {index + 1}"
         legs.append(Leg(line.link, task.checker, traced.positions, line, rates, name))
-        steps.append(traced.largest_step)
+        steps.append(_largest_step(traced))
         start = traced.positions[-1]
     return legs, lines, steps, stopped
 
@@ -147,3 +147,11 @@ def _deviation(legs: Sequence[Leg], trajectory: JointTrajectory, motions: LinkMo
         return min(float(np.linalg.norm(place - pose.translation)) for place in places)
 
     return max(off(positions) for positions in trajectory.positions)
+
+
+def _largest_step(traced: Trace) -> float:
+    """Farthest that a joint moves within one requested step of a trace [rad or m]."""
+    stride = min(traced.stride, len(traced.positions) - 1)
+    if stride < 1:
+        return 0.0
+    return float(np.abs(traced.positions[stride:] - traced.positions[:-stride]).max())

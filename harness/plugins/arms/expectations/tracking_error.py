@@ -11,7 +11,7 @@ from harness.cell.scope import At
 from harness.core.amounts import amount
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.expectation import Mechanisms, Predicate
-from harness.judging.joints import gripper_joints, hand_joints
+from harness.judging.joints import hand_joints
 from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
@@ -56,7 +56,7 @@ class TrackingError(Predicate):
         number, in metres.
         """
         run = window.run
-        hand = gripper_joints(run)
+        hand = hand_joints(run.robot)
         parts: list[Part] = []
         for column, joint in enumerate(run.robot.movable_joints):
             error = np.abs(

@@ -21,7 +21,6 @@ from harness.judging.contacts import (
     force_between,
     pairs_of,
     sample_time,
-    settled,
     unseen_contacts,
 )
 from harness.judging.expectation import SPECIAL_BODIES, Predicate
@@ -32,6 +31,7 @@ from harness.judging.temporal import without_gaps
 from harness.judging.window import Window, lasting
 from harness.language.base import Duration, Force, Name
 from harness.language.expectation import Quantity
+from harness.plugins.objects.settled import settled
 from harness.recording.verdict import Measure
 
 CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "contact")

@@ -8,7 +8,7 @@ from pydantic import Field
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.amounts import amounts
-from harness.judging.contacts import DEBOUNCE, settled
+from harness.judging.contacts import DEBOUNCE
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import present
@@ -16,6 +16,7 @@ from harness.judging.support import required_support, supports
 from harness.judging.window import Window
 from harness.language.base import Name
 from harness.language.expectation import Quantity
+from harness.plugins.objects.settled import settled
 from harness.recording.verdict import Measure
 
 SUPPORT = Quantity("support from below", "N", "at least half of its weight, within 1 %")

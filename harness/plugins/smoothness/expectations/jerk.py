@@ -11,7 +11,7 @@ from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
-from harness.judging.joints import gripper_joints
+from harness.judging.joints import hand_joints
 from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
@@ -62,7 +62,7 @@ class Jerk(Predicate):
         run = window.run
         velocities, times = run.signals.joint_velocities, run.signals.times
         span = max(self.window, float(np.median(np.diff(times)))) if len(times) > 1 else self.window
-        hands = gripper_joints(run)
+        hands = hand_joints(run.robot)
         parts = [
             Part(
                 JERK,
