@@ -19,7 +19,6 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.execution_failures import WidthFailure
-from harness.recording.explanation import Explanation
 from harness.robot.end_effector import Gripper
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
@@ -255,22 +254,12 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
         return
     too, limit, does = ("thin", least, "closes") if width < least else ("wide", opening, "opens")
     stated, most = distinct(width, limit, lambda value, more: f"{value * 1e3:.{1 + more}f} mm")
-    height = f"{size[vertical] * 1e3:.1f} mm"
-    other = "a thicker object, or a gripper that closes further"
-    if too == "wide":
-        other = "a narrower object, or a gripper that opens wider"
-    advice = f"take {other}: no side of it fits"
-    if can_hold(size[vertical], cell):
-        advice = f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
-    elif not has_simple_shape(obj):
-        advice = "give a `grasp_pose` that takes it by a part that fits"
     whose = "its" if has_simple_shape(obj) else "its box's"
     raise StepFailed(
         "GOAL_STATE_INVALID",
         f"'{obj.name}' is too {too} for the gripper: {stated} across {whose} narrowest level side,"
         f" and the gripper {does} to {most}",
         WidthFailure(width, opening, least, size[vertical]),
-        Explanation(advice=advice),
     )
 
 

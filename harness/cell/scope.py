@@ -307,11 +307,6 @@ class Scope:
             return
         self.problems.add(loc, message, hint, needs=("world",))
 
-    def check_camera(self, name: str, loc: Loc) -> None:
-        """Report a name that is no camera of the robot, the world or the scenario."""
-        if name not in self.cameras:
-            self.problems.unknown(loc, "camera", name, self.cameras)
-
     def check_body(self, name: str, loc: Loc, *, special: tuple[str, ...]) -> None:
         """Report a name of no link, object or arm of several, and none of some special words."""
         description = self.description

@@ -138,17 +138,6 @@ def lowest_points(record: ObjectRecord, poses: FloatArray) -> FloatArray:
     return np.min(lowest, axis=0)
 
 
-def frame_speeds(
-    run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
-) -> FloatArray:
-    """Speed of the origin of a frame since the sample before [m/s], shape (N,); see `_rates`."""
-
-    def moved(before: FloatArray, after: FloatArray) -> FloatArray:
-        return np.linalg.norm(after[:, :3] - before[:, :3], axis=1)
-
-    return _rates(run, name, poses, here, moved)
-
-
 def body_speeds(
     run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
@@ -168,7 +157,7 @@ def body_speeds(
     appears = np.flatnonzero(there & ~np.append(False, there[:-1]))
     times = run.signals.times
     for way in (moved, turned):
-        speeds = _rates(run, name, poses, here, way)
+        speeds = rates(run, name, poses, here, way)
         for first in np.union1d(appears, put_samples(run, name)).tolist():
             last = int(np.searchsorted(times, times[first] + STILL + TIME_RESOLUTION))
             settled = way(poses[first : first + 1], poses[first + 1 : last]) / STILL
@@ -181,7 +170,7 @@ def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
     return turn_between(before[:, 3:], after[:, 3:])
 
 
-def _rates(
+def rates(
     run: Run,
     name: str,
     poses: FloatArray,
@@ -193,15 +182,15 @@ def _rates(
     The first sample, and that at which an object appears or shows where a step put it, is at rest
     by definition. Where this pose or the one before is not known the speed is NaN.
     """
-    rates, missing = np.zeros(len(poses)), np.isnan(poses).any(axis=1)
-    rates[1:] = moved(poses[:-1], poses[1:]) / np.diff(run.signals.times)
-    appeared = np.isnan(rates) & ~missing
+    found, missing = np.zeros(len(poses)), np.isnan(poses).any(axis=1)
+    found[1:] = moved(poses[:-1], poses[1:]) / np.diff(run.signals.times)
+    appeared = np.isnan(found) & ~missing
     if here is not None:
         appeared &= ~np.append(False, here[:-1])
     appeared[put_samples(run, name)] = True
-    rates[appeared] = 0.0
-    rates[missing] = np.nan
-    return rates
+    found[appeared] = 0.0
+    found[missing] = np.nan
+    return found
 
 
 def calm(run: Run, speed: FloatArray, here: BoolArray | None = None) -> FloatArray:

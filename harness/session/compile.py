@@ -31,7 +31,7 @@ from harness.planning.search.find_pipeline import check_planner
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
-from harness.session.cameras import all_cameras, check_cameras
+from harness.session.cameras import all_cameras
 from harness.session.options import check_planning, merged_options
 from harness.world.imported import ImportedWorld
 from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
@@ -106,7 +106,6 @@ class _Compiler:
         for expectation, loc, step in self.pending:
             with self._gaps_allowed():
                 check_expectation(as_expectation(expectation), loc, self.scope, step)
-        check_cameras(sources.world.world.cameras, scenario.cameras, self.scope)
         parts = resolved_parts(scenario, self.scope)
         if len(objects) + len(self.later) > MOST_OBJECTS:
             self.problems.add(

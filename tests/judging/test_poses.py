@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.judging.body_motion import body_speeds, calm, frame_speeds
+from harness.judging.body_motion import body_speeds, calm, rates
 from harness.judging.poses import (
     JUMP,
     frame_poses,
@@ -112,6 +112,10 @@ def test_what_a_step_moves_has_a_new_start_however_little_and_others_only_by_a_j
         assert (start_poses(run, "box")[-1, 1] > 0) == is_new
 
 
+def _shift(before, after):
+    return np.linalg.norm(after[:, :3] - before[:, :3], axis=1)
+
+
 def test_speeds_are_those_since_the_sample_before():
     poses = at(N)
     poses[10:, :3] = (0.003, 0.0, 0.004)
@@ -120,7 +124,7 @@ def test_speeds_are_those_since_the_sample_before():
     poses[:3] = np.nan
     poses[30:32] = np.nan
     run = make_run(N)
-    linear, angular = frame_speeds(run, "box", poses), body_speeds(run, "box", poses)[1]
+    linear, angular = rates(run, "box", poses, None, _shift), body_speeds(run, "box", poses)[1]
     unknown = [0, 1, 2, 30, 31]
     assert where(np.isnan(linear)) == where(np.isnan(angular)) == unknown
     expected = np.zeros(N)
@@ -129,7 +133,7 @@ def test_speeds_are_those_since_the_sample_before():
     expected[[10, 20]] = 0.0, 0.02 / DT
     assert np.delete(angular, unknown) == pytest.approx(np.delete(expected, unknown), abs=1e-9)
     one = make_run(1)
-    assert frame_speeds(one, "box", at(1)).tolist() == [0.0]
+    assert rates(one, "box", at(1), None, _shift).tolist() == [0.0]
     assert [values.tolist() for values in body_speeds(one, "box", at(1))] == [[0.0], [0.0]]
     half = at(N)
     half[20:, 3:] = (0.0, 1.0, 0.0, 0.0)

@@ -12,11 +12,11 @@ from harness.planning.ik.numeric import (
     MOST_RESTARTS,
     RESTARTS,
     LinkTask,
-    sample_group_positions,
 )
 from harness.planning.ik.numeric import solve_numeric as solve
 from harness.planning.ik.pose_table import SIZE
 from harness.planning.model.robot_model import GroupSpace, RobotModel
+from harness.plugins.motions.held_constraints import random_positions
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import gripper_names, load_robot, robot_names
 
@@ -73,7 +73,7 @@ def measure(model: str, kind: str, poses: int) -> Success:
     found = [0] * len(ATTEMPTS)
     residual = 0.0
     for _ in range(poses):
-        goal = _goal(kind, space, description.tcp_link, sample_group_positions(space, rng))
+        goal = _goal(kind, space, description.tcp_link, random_positions(space, rng))
         for place, restarts in enumerate(ATTEMPTS):
             solutions = solve(
                 space,

@@ -215,13 +215,6 @@ def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
     return eigenpy.LLT(matrix).solve(right).reshape(-1)  # one joint gives a two-dimensional array
 
 
-def sample_group_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
-    """Draw group positions uniformly inside the limits, or in one turn where there are none."""
-    lower = np.where(np.isfinite(space.lower), space.lower, -np.pi)
-    upper = np.where(np.isfinite(space.upper), space.upper, np.pi)
-    return rng.uniform(lower, upper)
-
-
 def solve_numeric(
     space: GroupSpace,
     goal: LinkGoal,

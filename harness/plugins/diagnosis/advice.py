@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from harness.cell.cell import Cell
-from harness.cell.grasping import least_gap
+from harness.cell.grasping import can_hold, has_simple_shape, least_gap
 from harness.core.errors import StepFailed
 from harness.core.registry import OWN_PACKAGE, registry
 from harness.plugins.diagnosis.approach_advice import approach_advice
-from harness.recording.execution_failures import ControlFailure, GraspFailure, UnrestFailure
+from harness.recording.execution_failures import (
+    ControlFailure,
+    GraspFailure,
+    UnrestFailure,
+    WidthFailure,
+)
 from harness.recording.explanation import ApproachFailure, Explanation
+from harness.steps.pick import Pick
 
 
 def advice(failure: StepFailed, cell: Cell) -> str:
@@ -24,6 +30,8 @@ def advice(failure: StepFailed, cell: Cell) -> str:
         return approach_advice(failure, cell)
     if failure.details.find(Explanation) is not None:
         return ""
+    if (width := failure.details.find(WidthFailure)) is not None:
+        return _about_width(width, cell)
     if is_grasp:
         start = (
             "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"
@@ -41,6 +49,19 @@ def advice(failure: StepFailed, cell: Cell) -> str:
             " or slides for ever needs something to stop it"
         )
     return ""
+
+
+def _about_width(failure: WidthFailure, cell: Cell) -> str:
+    if can_hold(failure.height, cell):
+        height = f"{failure.height * 1e3:.1f} mm"
+        return f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
+    step = cell.current.spec
+    if isinstance(step, Pick) and not has_simple_shape(cell.presence[step.object].obj):
+        return "give a `grasp_pose` that takes it by a part that fits"
+    other = "a narrower object, or a gripper that opens wider"
+    if failure.width < failure.least_gap:
+        other = "a thicker object, or a gripper that closes further"
+    return f"take {other}: no side of it fits"
 
 
 def _about_contacts(failure: ControlFailure, cell: Cell) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
-from harness.judging.body_motion import frame_speeds
+from harness.judging.body_motion import rates
 from harness.judging.contacts import (
     FORCE_WINDOW,
     bodies,
@@ -101,8 +101,8 @@ def _recorded(node: Signal, window: Window, force_window: float) -> Values:
             poses = window.cut(_poses(window, name))
             return Values(angle_between(rotate(poses[:, 3:], UP), UP), "rad")
         case "speed", (name,):
-            there = frame_present(window.run, name)
-            speed = frame_speeds(window.run, name, _poses(window, name), there)
+            run = window.run
+            speed = rates(run, name, _poses(window, name), frame_present(run, name), _shift)
             return Values(window.cut(speed), "m/s")
         case "force", (first, second):
             run = window.run
@@ -126,6 +126,11 @@ def _recorded(node: Signal, window: Window, force_window: float) -> Values:
             return _joint(name, joint, window)
         case _:
             raise NotObservable(f"there is no signal '{node}'")
+
+
+def _shift(before: FloatArray, after: FloatArray) -> FloatArray:
+    """How far the origin of a frame moved [m], shape (N,)."""
+    return np.linalg.norm(after[:, :3] - before[:, :3], axis=1)
 
 
 def _poses(window: Window, name: str) -> FloatArray:

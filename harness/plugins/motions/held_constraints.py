@@ -18,7 +18,6 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.goals.goal_study import MOST_GOALS
-from harness.planning.ik.numeric import sample_group_positions
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.model.turns import FREE, free_axis, turns_from
 from harness.planning.verification.path_constraints import FindFrame, Violation
@@ -42,6 +41,13 @@ _DAMPING = 1e-12  # of steps at singular positions
 
 Poses = tuple[FloatArray, FloatArray]
 """Rotations, shape (N, 3, 3), and translations, shape (N, 3) [m]."""
+
+
+def random_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
+    """Group positions drawn uniformly inside the limits, or in one turn where there are none."""
+    lower = np.where(np.isfinite(space.lower), space.lower, -np.pi)
+    upper = np.where(np.isfinite(space.upper), space.upper, np.pi)
+    return rng.uniform(lower, upper)
 
 
 class PathBands:
@@ -179,7 +185,7 @@ class PathBands:
         side = 2 * goal.position_tolerance / np.sqrt(3)
         at_goal = self.at(PositionBox(goal.link, SE3(np.eye(3), goal.position), (side, side, side)))
         rng, space = np.random.default_rng(seed % 2**63), self.space
-        drawn = (sample_group_positions(space, rng) for _ in range(PROJECTIONS))
+        drawn = (random_positions(space, rng) for _ in range(PROJECTIONS))
         for begin in chain(found, drawn):
             positions = at_goal.project(begin)
             if positions is not None and checker.state_free(positions):

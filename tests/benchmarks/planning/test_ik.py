@@ -10,9 +10,10 @@ from eaik.IK_HP import HPRobot
 
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.numeric import sample_group_positions, solve_numeric
+from harness.planning.ik.numeric import solve_numeric
 from harness.planning.model.robot_model import GroupSpace
 from harness.plugins.closed_forms.ur_arm import UrGeometry, solve_ur
+from harness.plugins.motions.held_constraints import random_positions
 from harness.ports.goals import PoseGoal
 from harness.robot.load import load_robot
 from tests.installed import is_installed
@@ -94,7 +95,7 @@ def test_numeric_solutions_of_random_reachable_poses(file, print_row):
     rng, first, spread, solved, counts = np.random.default_rng(3), [], [], 0, []
     baseline = []
     for number in range(NUMERIC_POSES):
-        positions = space.whole(sample_group_positions(space, rng))
+        positions = space.whole(random_positions(space, rng))
         goal = PoseGoal(description.tcp_link, kinematics.link_pose(positions, description.tcp_link))
         begin = time.process_time_ns()
         solved += bool(solve_numeric(space, goal, space.part(start), enough=1))
@@ -133,7 +134,7 @@ def _restarted_least_squares(
     frame, target = space.robot.frame_id(goal.link), pin.SE3(goal.pose.matrix())
     damping = DAMPING * np.eye(6)
     for _ in range(RESTARTS):
-        positions = sample_group_positions(space, rng)
+        positions = random_positions(space, rng)
         for _ in range(ITERATIONS):
             configuration = space.configuration(positions)
             pin.forwardKinematics(model, data, configuration)

@@ -22,6 +22,7 @@ from harness.judging.words import HARDLY_OBSERVED
 from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
 from harness.language.expectation import Quantity
 from harness.plugins.cameras.keys.marker import MarkerName
+from harness.plugins.cameras.known import check_camera
 from harness.plugins.cameras.pixels import blob_pixels, label_pixels, marker_pixels
 from harness.plugins.cameras.watched import WATCH_RATE, period
 from harness.recording.signals import CaptureRecord
@@ -133,7 +134,7 @@ class Sees(Predicate):
     )
 
     def check(self, at: At) -> None:
-        at.scope.check_camera(self.camera, at.key("camera"))
+        check_camera(self.camera, at.scope, at.key("camera"))
         if camera := at.scope.cameras.get(self.camera):
             ends, of = (0.0, camera.width * camera.height), "the number of pixels"
             refuse_decided(at, "min_area", ">=", self.min_area, ends, of, "give a smaller one")

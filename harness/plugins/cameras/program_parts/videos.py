@@ -11,6 +11,7 @@ from harness.cell.scope import Scope
 from harness.core.extras import install_command
 from harness.language.scenario import ScenarioContent
 from harness.plugins.cameras.keys.video import VideoSpec
+from harness.plugins.cameras.known import check_camera
 
 
 class Videos(ProgramPart):
@@ -31,7 +32,7 @@ class Videos(ProgramPart):
             loc = ("videos", index, "camera")
             if spec.camera in rates:
                 scope.problems.add(loc, f"'{spec.camera}' is recorded already", "name it once")
-            scope.check_camera(spec.camera, loc)
+            check_camera(spec.camera, scope, loc)
             camera = scope.cameras.get(spec.camera)
             if camera is None:
                 continue

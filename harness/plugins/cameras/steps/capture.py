@@ -11,6 +11,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.cell.step import Step
 from harness.language.base import Name
+from harness.plugins.cameras.known import check_camera
 from harness.plugins.cameras.looks import TakenPicture
 
 MOST_CAPTURES = 1000  # pictures that the steps of a file take; one of 640 x 480 takes 0.2 s
@@ -35,7 +36,7 @@ class Capture(Step):
         return f"{self.camera}: {', '.join(self.kinds)}"
 
     def check(self, at: At) -> None:
-        at.scope.check_camera(self.camera, at.key("camera"))
+        check_camera(self.camera, at.scope, at.key("camera"))
         scope, before = at.scope, at.scope.requested_pictures
         camera = scope.cameras.get(self.camera)
         scope.requested_pictures += 1.0 if camera is None else camera.pictures_counted
