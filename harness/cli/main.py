@@ -55,15 +55,17 @@ def entry() -> NoReturn:
     from harness.core.interruption import interrupt
 
     try:
-        _handle(interrupt)
-        code = main()
+        try:
+            _handle(interrupt)
+            code = main()
+        except SystemExit as end:  # of argparse, which has written why
+            code = end.code if isinstance(end.code, int) else EXIT_CODES["error"]
+        except OSError as error:
+            code = _unwritable(error)
+        code = _flushed(code)
     except KeyboardInterrupt:
         code = INTERRUPTED_EXIT_CODE
-    except SystemExit as end:  # of argparse, which has written why
-        code = end.code if isinstance(end.code, int) else EXIT_CODES["error"]
-    except OSError as error:
-        code = _unwritable(error)
-    os._exit(_flushed(code))
+    os._exit(code)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -124,6 +124,35 @@ def test_the_first_signal_waits_for_the_end_of_an_import(folder, signals, where)
     assert (done.stdout.strip(), done.stderr) == (where, "")
 
 
+LATE = """\
+import os, signal, sys
+from harness.cli.main import entry
+class Late:
+    def __init__(self, stream):
+        self._stream = stream
+    def __getattr__(self, name):
+        return getattr(self._stream, name)
+    def flush(self):
+        self._stream.flush()
+        os.kill(os.getpid(), {number})
+        os.getpid()
+sys.stdout = Late(sys.stdout)
+sys.argv[1:] = {words}
+entry()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("words", [["list", "planners"], ["--version"]])
+def test_signals_while_the_last_words_are_written_end_a_command(words, number):
+    """One at each attempt to write them."""
+    done = subprocess.run(
+        [sys.executable, "-c", LATE.format(number=int(number), words=words)],
+        capture_output=True, text=True, check=False, timeout=HANG,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (130, "")
+
+
 IGNORED = """\
 import os, signal, time, weakref
 from harness.core.interruption import interrupt
