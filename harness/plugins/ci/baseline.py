@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.core.files import replaced, writing
+from harness.core.files import is_file, path_exists, replaced, writing
 from harness.plugins.ci.document import read_document
 from harness.plugins.ci.gate import KEEP
 from harness.plugins.ci.suite_reporters.junit import SAMPLE
@@ -111,7 +111,7 @@ def _gone(cases: Sequence[SuiteCase], baseline: Margins) -> Iterator[ShrunkMargi
     dropped = _dropped(cases, baseline)
     for name, margins in baseline.items():
         file = name.partition(" [")[0]
-        is_there = name not in dropped and Path(file).exists()
+        is_there = name not in dropped and path_exists(file)
         if name in failed or (name not in judged and is_there):
             continue
         for key, before in margins.items():
@@ -152,7 +152,7 @@ def updated(cases: Sequence[SuiteCase], baseline: Margins) -> dict[str, dict[str
     kept = {
         name: dict(margins)
         for name, margins in baseline.items()
-        if name not in dropped and Path(name.partition(" [")[0]).is_file()
+        if name not in dropped and is_file(name.partition(" [")[0])
     }
     return kept | {name: margins for name, margins in passed.items() if name not in failed}
 

@@ -58,7 +58,7 @@ def read_results(folder: Path) -> SavedSuite:
         cases = [_case(each) for each in document["cases"]]
         known: tuple[Outcome, ...] = get_args(Outcome)
         return SavedSuite(known[known.index(document["outcome"])], cases, frozenset(rates))
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise UsageError(f"'{file}' is no file of results: {error}") from error
 
 
@@ -66,6 +66,6 @@ def _case(plain: dict[str, Any]) -> SuiteCase:
     for verdict in plain["verdicts"]:
         for part in (verdict, *verdict["measures"]):
             part.update({key: math.nan for key in NUMBERS if key in part and part[key] is None})
-    return SuiteCase(
-        result_of(plain), plain["values"], tuple(plain["tags"]), tuple(plain["verifies"])
-    )
+    if not math.isfinite(sum((result := result_of(plain)).wall_times.values(), result.sim_time)):
+        raise ValueError("a time is not finite")
+    return SuiteCase(result, plain["values"], tuple(plain["tags"]), tuple(plain["verifies"]))

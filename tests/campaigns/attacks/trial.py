@@ -120,7 +120,7 @@ def finish(pid: int, said: Path, *, act: Callable[[float], bool] | None = None) 
         if act is not None and not act(now - begin):
             act = None
         work = processor_time(pid)
-        if work > used + 0.01:
+        if abs(work - used) > 0.01:  # less where a process of it has ended
             used, since = work, now
         if work > LONGEST or now > begin + LONGEST_WAIT or now > since + IDLE_WAIT:
             ended.hang = f"it hangs after {work:.0f} s of processor time, {now - begin:.0f} s"

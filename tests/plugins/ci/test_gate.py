@@ -371,3 +371,25 @@ def test_a_document_with_strange_numbers_and_texts_is_refused(name, text, said, 
     assert main(["gate", "reports", "--ctrf", "c.json", *words]) == 2
     assert said in capsys.readouterr().err
     assert not (folder / "c.json").exists()
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "1e999", "9" * 400])
+@pytest.mark.parametrize("key", ["plan", "sim_time"])
+def test_a_time_that_is_not_finite_is_no_result(key, number, folder, capsys):
+    write_suite(folder / "reports", small_suite(), 0)
+    file = folder / "reports/results.json"
+    document = json.loads(file.read_text())
+    case = document["cases"][0]
+    (case if key == "sim_time" else case["wall_times"])[key] = "HERE"
+    file.write_text(json.dumps(document).replace('"HERE"', number))
+    assert main(["gate", "reports", "--ctrf", "c.json"]) == 2
+    assert "no file of results" in capsys.readouterr().err
+    assert not (folder / "c.json").exists()
+
+
+def test_a_baseline_may_name_files_that_no_disk_can_have(folder):
+    baseline(folder, passed(0), replace(passed(1), file=f"{'a' * 300}.scenario.yaml"))
+    save(folder, passed(0))
+    assert gate() == 1
+    assert gate("--update-baseline") == 0
+    assert gate() == 0
