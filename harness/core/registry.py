@@ -276,11 +276,10 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
     return plugin
 
 
-def import_built_in(kinds: Collection[str], words: Collection[str]) -> None:
+def import_built_in(kinds: Collection[str], words: Collection[str]) -> list[Any]:
     """Import the built-in plug-ins that words name, for this process and its forks."""
-    for found in (_registries[kind] for kind in kinds):
-        for name in found.built_in_modules.keys() & set(words):
-            found[name]
+    places = [_registries[kind] for kind in kinds]
+    return [found[name] for found in places for name in found.built_in_modules.keys() & set(words)]
 
 
 def built_in_class(kind: str, name: str) -> Any:

@@ -90,10 +90,15 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
     from harness.core.registry import import_built_in
     from harness.core.versions import library_versions
     from harness.language.reading.load import is_foreign_world, load_world, read_scenario
+    from harness.language.scenario import Scenario
+    from harness.language.world import WorldSpec
     from harness.robot.load import load_ahead, read_bundled
+    from harness.robot.robot_yaml import RobotYaml
 
     library_versions()
-    import_built_in(("step", "expectation"), words)
+    named = import_built_in(("step", "expectation"), words)
+    for model in (Scenario, WorldSpec, RobotYaml, *named):
+        model.model_rebuild()
     read_bundled(words)
     for job in some:
         with suppress(HarnessError):  # the case itself reports the error

@@ -24,3 +24,14 @@ def test_a_run_imports_no_library_that_it_does_not_use(modules, unused):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+def test_options_of_a_run_are_read_before_its_libraries_are_imported():
+    """Then the process that runs cases starts to import them."""
+    code = (
+        "import sys; from harness.cli.main import parser_of\n"
+        "words = ['run', 'x', '--baseline', 'y']; parser_of(words).parse_args(words)\n"
+        "print(*[name for name in ('numpy', 'pydantic', 'yaml') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []

@@ -241,3 +241,9 @@ def test_a_preparation_that_fails_leaves_the_server_at_work(server):
 def test_bundled_robots_that_scenarios_name_are_read_once_for_all(server):
     server.prepare(read_ahead, frozenset({"Pick", "open_manipulator_x", "rh_p12_rn_a"}))
     assert outcome(server, jobs.reports_robots_already_read).title == "2"
+
+
+def test_models_of_scenarios_and_their_steps_are_built_once_for_all(server):
+    assert outcome(server, jobs.reports_models_already_built).title == ""
+    server.prepare(read_ahead, frozenset({"Pick", "gripper"}))
+    assert outcome(server, jobs.reports_models_already_built).title == "Scenario Gripper"
