@@ -56,7 +56,7 @@ def mean_colour(picture, viewpoint, point):
     return picture[row - 3 : row + 4, column - 3 : column + 4].reshape(-1, 3).mean(axis=0)
 
 
-@pytest.mark.nightly(but=["egl", "osmesa"])
+@pytest.mark.nightly(but=["egl"])
 @pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
 def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
     run = a_run(ur3e)
@@ -108,7 +108,7 @@ def test_one_picture_is_drawn_for_each_executed_step(ur3e):
     assert (stills.note == "") is (stills.backend != "rays")
 
 
-@pytest.mark.nightly(but=["0.0-1", "0.01-3"])
+@pytest.mark.nightly(but=["0.01-3"])
 @pytest.mark.parametrize(
     ("moved", "drawn"), [(0.0, 1), (0.2 * UNSEEN, 1), (2 * UNSEEN, 3), (0.01, 3), (np.nan, 2)]
 )

@@ -84,6 +84,7 @@ def test_a_video_has_the_camera_s_size_in_even_numbers(width, height, tmp_path):
     assert video.width % 2 == video.height % 2 == 0
 
 
+@pytest.mark.nightly(but=["0.02"])
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_a_video_shows_what_the_camera_delivered(noise):
     run, objects = crossing(2)
@@ -120,6 +121,7 @@ def test_pictures_beyond_hd_count_by_their_pixels(width, height, counted):
     assert replace(CAMERA, width=width, height=height).pictures_counted == counted
 
 
+@pytest.mark.nightly
 def test_videos_of_equal_runs_are_equal_bytes():
     run, objects = crossing(21)
     run = replace(run, cameras=(replace(CAMERA, noise_stddev=0.01),))

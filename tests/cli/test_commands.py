@@ -230,6 +230,7 @@ def test_the_schema_is_json_schema_and_the_same_when_written(folder, capsys):
     assert json.loads((folder / "s.json").read_text()) == printed
 
 
+@pytest.mark.nightly
 def test_a_reader_that_leaves_early_gets_no_traceback():
     command = [sys.executable, "-u", "-m", "harness.cli", "list", "steps"]
     writer = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

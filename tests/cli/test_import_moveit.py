@@ -103,6 +103,7 @@ def convert(*files, **texts):
     return main(["import", "moveit", *files, "--robot", "arm.urdf", "--srdf", "arm.srdf"])
 
 
+@pytest.mark.nightly(but=["lists"])
 @pytest.mark.parametrize("scene", [LISTS, MAPPINGS], ids=["lists", "mappings"])
 def test_a_scene_and_its_request_become_a_scenario_that_runs(folder, capsys, scene):
     assert convert("scene1.yaml", "request1.yaml", scene1=scene, request1=REQUEST) == 0

@@ -92,6 +92,7 @@ def test_an_array_of_another_length_shape_or_type_is_named(base, run, name, chan
     assert_refused(base, run, said, named)
 
 
+@pytest.mark.nightly(but=[0, 2, 16])
 @pytest.mark.parametrize(
     ("place", "value", "said"),
     [

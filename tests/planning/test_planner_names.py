@@ -54,6 +54,7 @@ def test_every_planner_of_the_ompl_wheel_is_offered():
     assert {resolve_planner_id(name) for name in planners} == planners
 
 
+@pytest.mark.nightly(but=["auto"])
 @pytest.mark.parametrize("name", planner_names())
 def test_every_planner_repeats_itself_inside_its_budget(trial, name):
     first, second = trial.search(name), trial.search(name)

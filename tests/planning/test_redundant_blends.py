@@ -38,6 +38,7 @@ def items(cell, radius):
     ]
 
 
+@pytest.mark.nightly(but=["0.005"])
 @pytest.mark.parametrize("radius", [0.005, 0.02, 0.035])
 def test_seven_joints_blend_without_a_stop_and_stay_on_the_lines(cell, radius):
     planner = cell.planner

@@ -12,6 +12,7 @@ from tests.waiting import HANG
 SIZES = [(130, 98), (132, 98), (146, 98), (150, 102), (160, 98), (34, 18)]
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_pictures_of_any_size_are_encoded_to_the_same_bytes_each_time(width, height):
     rng = np.random.default_rng(1)

@@ -126,6 +126,7 @@ def test_what_could_not_be_observed_is_no_pass(visit, tmp_path):
     assert "does not hold the text" in page.inner_text("#panel-source")
 
 
+@pytest.mark.nightly
 def test_a_floor_is_not_used_up(opened):
     clear = Measure("clearance", 0.0127, 0.01, ">=", "m", 0.5, "box")
     held = Verdict("clearance", "passed", 0.0027, "m", 0.5, 3, "", "", (clear,))

@@ -26,7 +26,7 @@ def page_file(request, tmp_path_factory):
     return write_suite(folder, small_suite(), 3)[0]
 
 
-@pytest.mark.nightly(but=["run-a script", "run-a remote picture", "suite-a handler"])
+@pytest.mark.nightly(but=["run-a script", "suite-a handler"])
 @pytest.mark.parametrize("intruder", INTRUDERS.values(), ids=INTRUDERS)
 def test_what_is_put_into_a_page_neither_runs_nor_loads(browser, page_file, tmp_path, intruder):
     text = page_file.read_text(encoding="utf-8")

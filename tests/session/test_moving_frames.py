@@ -62,6 +62,7 @@ def test_an_object_that_leaves_the_belt_is_missed_with_the_time(tmp_path):
     assert "'can' leaves 'belt' in " in step.message
 
 
+@pytest.mark.nightly
 def test_a_gripper_closes_on_the_way(tmp_path):
     recorded = run(tmp_path, step=f"parallel: [{{gripper: closed}}, {{{OVER}}}]")
     assert recorded.steps[1].status == "passed"
@@ -195,12 +196,14 @@ def test_a_goal_of_an_arm_at_once_with_another_is_missed(tilt, recorded_run):
         assert "'ball', in whose frame the goal is, moved by itself" in step.message
 
 
+@pytest.mark.nightly
 def test_what_rests_again_is_not_missed(tmp_path):
     steps = f"settle: 1 mm/s, timeout: 9 s}}, {{{GO % 'cabinet/part'}"
     run = run_by_themselves(tmp_path, DRAWER % -0.1, 0, steps)
     assert run.steps[-1].status == "passed"
 
 
+@pytest.mark.nightly
 def test_what_the_arm_pushes_itself_is_not_missed(tmp_path):
     lesson = Path("scenarios/contact/01_push_a_crate.scenario.yaml").read_text("utf-8")
     pose = "{xyz: [0.5, 0.2, 0.12], rpy: [180 deg, 0, 0]}"

@@ -180,6 +180,7 @@ def test_the_fingers_press_a_grasped_object_against_each_other(gripper_over_tabl
     assert directions[0] @ directions[1] < -0.9
 
 
+@pytest.mark.nightly
 def test_presses_say_where_fingers_touch_what_they_hold_and_which_way(gripper_over_table):
     simulator, _, _ = squeeze(gripper_over_table)
     signals = simulator.finish()

@@ -137,6 +137,7 @@ def test_a_push_presses_with_what_friction_needs(push_of, robot, speed):
     assert ground.mean() == pytest.approx(WEIGHT, rel=0.15)
 
 
+@pytest.mark.nightly
 def test_a_finger_that_does_not_stick_presses_with_what_the_weight_alone_needs(push_of):
     """What sticks keeps the box from rising by 0.05 mm as it begins to slide: it presses it down.
 

@@ -221,7 +221,7 @@ expect: [{never: collision}]
 """
 
 
-@pytest.mark.nightly(but=[1])
+@pytest.mark.nightly
 @pytest.mark.parametrize("again", ["", "- detach_object: bottle\n- attach_object: bottle\n"])
 def test_a_weld_that_failed_holds_nothing(tmp_path, again):
     """What the planner alone believes to be held may be knocked over without a collision."""

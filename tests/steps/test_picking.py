@@ -186,7 +186,7 @@ def test_padding_that_is_in_the_way_is_named_with_both_distances(tmp_path):
     assert "only the `padding` of 60.0 mm is not kept" in advice(record)
 
 
-@pytest.mark.nightly(but=[2, 1])
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
     ("robot", "size", "opening", "words"),
     [
@@ -399,6 +399,7 @@ def test_a_pick_with_a_full_gripper_is_advised_to_put_down_first(tmp_path, secon
     assert "the gripper still holds 'cube': `place` or `release` it before this" in text
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @pytest.mark.parametrize("robot", [OM, UR5E])
 def test_a_place_after_a_pick_that_fails_is_no_second_problem(tmp_path, robot):
     steps = "- pick: cube\n- place: {object: cube, pose: {xyz: [0.2, 0.1, 0.02]}}"

@@ -173,7 +173,7 @@ def digest(found):
     return hasher.hexdigest()
 
 
-@pytest.mark.nightly(but=["pick-another robot, declared first"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(("scene", "far"), CASES)
 def test_a_far_robot_that_rests_changes_nothing_of_the_first_ones_motions(scene, far, recorded_run):
     alone, with_far = (

@@ -51,6 +51,7 @@ def checked(own, key, file, capsys):
     return code, said.out + said.err
 
 
+@pytest.mark.nightly(but=["include", "urdf", "world", "mesh"])
 @pytest.mark.parametrize("key", KEYS)
 def test_no_message_repeats_a_file_that_is_of_another_kind(folders, key, capsys):
     own, other = folders

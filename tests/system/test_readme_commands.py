@@ -32,6 +32,7 @@ def test_an_importable_module_need_not_be_a_distribution(name):
     assert not is_installed(name)
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("marker", NEEDS)
 def test_a_test_is_skipped_without_its_extra_and_is_never_part_of_the_default_run(marker, pytester):
     pytester.makepyprojecttoml(f"[tool.pytest.ini_options]\nmarkers = {MARKERS}")

@@ -64,7 +64,7 @@ def test_sizes_poses_and_masses_are_those_of_the_file(scene, capsys):
     assert "pose" not in cup
 
 
-@pytest.mark.nightly(but=[0, 1])
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
     ("name", "fits", "code"),
     [("cube", True, ""), ("brick", False, "GOAL_STATE_INVALID"), ("far", True, "NO_IK_SOLUTION")],
@@ -119,6 +119,7 @@ def test_the_longest_lesson_is_a_page_that_an_agent_reads(capsys):
     assert len(json.loads(printed)["objects"]) == 7
 
 
+@pytest.mark.nightly
 def test_values_of_the_command_line_change_the_scene(scene, capsys):
     moved = by_name(described(capsys, scene, "--set", "objects.cube.pose.xyz=[0.3,0.2,0.025]"))
     assert moved["cube"]["pose"]["xyz"] == [0.3, 0.2, 0.025]

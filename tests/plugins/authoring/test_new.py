@@ -66,6 +66,7 @@ def test_an_arm_without_a_gripper_gets_a_motion_and_its_files_are_found_from_the
     assert code == 0, said
 
 
+@pytest.mark.nightly
 def test_a_motion_says_why_it_is_no_pick_and_that_it_passed(capsys):
     new("arm.urdf", "--srdf", "arm.srdf")
     said = capsys.readouterr().out
@@ -193,6 +194,7 @@ def test_wrong_words_are_exit_code_2_and_leave_nothing(arguments, said, folder, 
     assert not (folder / "sub").exists()
 
 
+@pytest.mark.nightly
 def test_the_first_line_names_the_schema_for_editors_which_is_there(tmp_path):
     assert main(["new", "a.scenario.yaml"]) == 0
     bundled = schema_of("a.scenario.yaml")

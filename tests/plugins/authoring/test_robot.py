@@ -58,6 +58,7 @@ def test_other_bundled_robots_are_good_too(name, capsys):
     assert check(capsys, name)[0] == 0
 
 
+@pytest.mark.nightly
 def test_the_same_seed_says_the_same_and_another_differs(capsys):
     first, again, other = (check(capsys, "ur3e", "--seed", seed) for seed in ("3", "3", "4"))
     assert first == again

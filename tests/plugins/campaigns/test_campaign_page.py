@@ -385,6 +385,7 @@ def test_a_parameter_is_judged_among_the_runs_of_the_files_that_have_it():
     assert both == {"a.yaml": alone, "b.yaml": {}}
 
 
+@pytest.mark.nightly
 def test_too_few_runs_of_a_file_are_no_share_of_zero(tmp_path, visit):
     cases = in_file("a.yaml", campaign(7)) + in_file("b.yaml", campaign(30))
     assert effects(cases)["a.yaml"] == {}
@@ -443,6 +444,7 @@ def test_failures_that_are_all_alike_have_a_panel_in_their_unit(tmp_path, visit,
     assert any(f"{slips} margins, from 1.1 mm to 1.1 mm" in each for each in texts) == (slips > 1)
 
 
+@pytest.mark.nightly
 def test_one_failure_alone_in_its_unit_is_a_sentence(tmp_path, visit):
     cases = [grasped(i, 0.001 + 1e-5 * i, "m") for i in range(8)] + [grasped(8, -0.05, "N")]
     page = visit(write_suite_page(tmp_path, SuiteRecord("failed", cases))).page
@@ -458,6 +460,7 @@ def test_the_panels_of_an_expectation_stand_next_to_each_other(tmp_path, visit):
     assert names == ["grasped", "grasped", "lifted cube"]
 
 
+@pytest.mark.nightly
 def test_failures_without_a_margin_are_counted(tmp_path, visit):
     cases = [SuiteCase(passed(i, 0.06 + 0.01 * i), {"x": i}) for i in range(8)]
     unknown = replace(verdict(0.03), margin=float("nan"))

@@ -89,6 +89,7 @@ def test_a_stated_force_is_what_presses_and_the_arm_stays_where_it_was_afterward
     assert result.step("comply").result.find(Yielded).effort_share < 1
 
 
+@pytest.mark.nightly
 def test_a_free_motion_follows_its_path(tmp_path):
     steps = """
   - comply:

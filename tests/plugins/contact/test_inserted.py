@@ -54,6 +54,7 @@ def test_the_margin_is_the_depth_beyond_the_required_one(inserted):
     assert np.abs(peg[:2] - [0.5, 0.1]).max() < 1.5e-4, "the hole's clearance keeps it"
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
     ("hole", "peg", "turn"),
     [
@@ -153,6 +154,7 @@ def test_a_peg_that_was_in_its_hole_all_the_time_is_no_insertion(tmp_path):
 THROUGH = "{size: [80 mm, 80 mm, 30 mm], hole: {diameter: 20.2 mm, depth: 30 mm}}"
 
 
+@pytest.mark.nightly(but=["0.06-0.02"])
 @pytest.mark.parametrize(
     ("bottom", "engaged"), [(0.078, 0.002), (0.06, 0.02), (0.05, 0.03), (0.03, 0.03)]
 )

@@ -74,6 +74,7 @@ def test_a_move_that_meets_nothing_fails_with_the_largest_force(tmp_path):
     )
 
 
+@pytest.mark.nightly(but=[0, 2])
 @pytest.mark.parametrize(
     ("limit", "tare", "said"),
     [

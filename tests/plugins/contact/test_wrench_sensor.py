@@ -127,6 +127,7 @@ def test_a_formula_of_what_no_sensor_reads_is_a_located_error(tmp_path, formula,
     assert "press.scenario.yaml:20:" in str(result)
 
 
+@pytest.mark.nightly(but=["300.0-turned0"])
 @pytest.mark.parametrize("turned", [(0, 0, 0), (0.4, -0.3, 1.1)])
 @pytest.mark.parametrize("rate", [float("inf"), 300.0])
 def test_the_weight_of_a_payload_is_gone_in_every_orientation(ur5e, turned, rate):

@@ -102,6 +102,7 @@ def test_a_turn_that_is_kept_is_kept():
     assert found.shift == pytest.approx(0.0884, abs=0.001)
 
 
+@pytest.mark.nightly(but=["xyz0", "xyz1"])
 @pytest.mark.parametrize("xyz", [(0.9, 0, 0.3), (0.5, -0.1, 0.3), (0.2, 0.6, 0.6), (0, 0.05, 0.2)])
 def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
     cell = Cell(ur("ur3e"))
@@ -116,7 +117,7 @@ def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
     assert cell.kinematics.solve(ARM, PoseGoal(TCP, pose), cell.state, 0)
 
 
-@pytest.mark.nightly(but=["xyz0-plan", "xyz1-check_goal"])
+@pytest.mark.nightly(but=["xyz0-plan"])
 @pytest.mark.parametrize("method", ["plan", "check_goal"])
 @pytest.mark.parametrize("xyz", [(0.9, 0, 0.3), (0.2, 0.6, 0.9)])
 def test_a_request_that_is_passed_by_its_name_is_explained(method, xyz):

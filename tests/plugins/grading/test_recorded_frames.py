@@ -149,6 +149,7 @@ def test_a_frame_without_a_parent_costs_what_is_in_it(recording, tmp_path):
     assert grade_bag(SCENARIO, bag, GAZEBO, allowed=["frames"]).earned == 14
 
 
+@pytest.mark.nightly
 def test_limits_are_not_observable_where_a_joint_is_not_recorded(recording, tmp_path):
     """What a follower needs no sensor for, a joint of its own does."""
     for message in recording.of("/joint_states"):

@@ -110,6 +110,7 @@ def test_nothing_is_interpolated_across_a_hole_in_the_joint_states(recording, tm
     assert not np.isnan(run.signals.object_poses["green_cylinder"][inside]).any()
 
 
+@pytest.mark.nightly
 def test_a_few_lost_messages_are_no_hole(recording, tmp_path):
     lost = (GAZEBO_STARTED + 4.0, GAZEBO_STARTED + 4.09)
     recording.messages = [m for m in recording.messages if not lost[0] < m.stamp < lost[1]]

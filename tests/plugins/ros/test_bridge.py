@@ -174,6 +174,7 @@ def test_the_path_of_the_tcp_is_published_as_by_the_course_s_trajectory_server(t
     assert paths[-1].header.frame_id == "world"
 
 
+@pytest.mark.nightly
 def test_a_sensor_of_force_and_torque_is_published(tmp_path):
     arm = "{model: open_manipulator_x, wrench_sensors: {hand: link5}}"
     with bridge(scenario(tmp_path, HOLD, robot=arm)) as (node, _):

@@ -92,6 +92,7 @@ def test_a_node_that_crashes_after_its_work_is_mentioned(tmp_path, capsys):
     assert "  done" in said
 
 
+@pytest.mark.nightly
 def test_points_do_not_hide_a_step_that_failed(tmp_path, capsys):
     file = scenario(tmp_path)
     (tmp_path / "elsewhere.py").write_text(ELSEWHERE, encoding="utf-8")
@@ -107,6 +108,7 @@ def test_a_command_that_cannot_be_started_is_named(capsys):
     assert "`/no/such/program` cannot be started: No such file" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_a_scenario_starts_only_what_the_user_allowed(tmp_path, capsys):
     file = scenario(tmp_path, "- external: {launch: student}")
     main(["grade", str(file), "--node", "teacher=true", "--no-report"])

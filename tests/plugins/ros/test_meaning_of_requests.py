@@ -209,6 +209,7 @@ def test_a_goal_of_an_orientation_alone_turns_the_link(client, said):
     assert text == f" by {PILZ['pipeline_id']} LIN: {TCP} turned"
 
 
+@pytest.mark.nightly
 def test_path_constraints_and_speeds_limit_motions_that_have_one_path(client):
     there = pose_goal(pose((0.4, 0.3, 0.4)))
     free = client.move_to(there, plan_only=True, **PILZ).result

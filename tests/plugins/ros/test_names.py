@@ -67,6 +67,7 @@ def test_misspelt_actions_are_noted_while_their_clients_wait_and_topics_at_the_e
     )
 
 
+@pytest.mark.nightly
 def test_a_session_without_nodes_says_that_no_command_came(tmp_path):
     with free_domain() as domain:
         request = RunRequest(scenario(tmp_path, HOLD + "\n  timeout: 0.5 s"), page=False)

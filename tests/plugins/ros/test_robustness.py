@@ -149,6 +149,7 @@ def test_another_implementation_of_the_protocol_reads_the_joints_and_commands_th
     assert len(message.position) == len(message.velocity) == len(message.name)
 
 
+@pytest.mark.nightly
 def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
     camera = "cameras: [{name: 2nd view, pose: {xyz: [0.5, 0, 0.5]}, look_at: [0, 0, 0]}]"
     with bridge(scenario(tmp_path, HOLD, camera)) as (node, _):

@@ -149,6 +149,7 @@ def test_each_namespace_has_a_controller_manager(tmp_path):
     assert claimed[0] == "right_joint1/position"
 
 
+@pytest.mark.nightly
 def test_names_of_a_scenario_replace_those_of_an_arm(tmp_path):
     names = "ros2: {arms: {left: {arm_controllers: [left_arm, also], gripper_controller: hand}}}\n"
     with bridge(cell(tmp_path, names + EXPECT)) as (node, _):

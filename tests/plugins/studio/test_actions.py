@@ -71,6 +71,7 @@ def test_an_object_is_moved_in_the_text_at_the_start_and_with_a_step_afterwards(
     assert not studio.cell.is_run
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("kind", "size", "half", "larger", "center"),
     [
@@ -233,6 +234,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.nightly(but=["a step", "not YAML"])
 @pytest.mark.parametrize("name", MISTAKES)
 def test_a_text_with_mistakes_opens_with_what_can_be_shown(tmp_path, name):
     text, scene = MISTAKES[name]

@@ -177,6 +177,7 @@ def test_a_motion_that_is_stopped_by_hand_fails_and_leaves_the_arm_where_it_is(c
     assert judged(cell).digest == "", "a run of the file is not stopped there"
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("count", [0, 1, 3])
 def test_a_step_recorded_after_a_motion_by_hand_is_run_with_all_others(cell, count):
     """From the start on: what was recorded by hand is no state of a run, the states before are."""

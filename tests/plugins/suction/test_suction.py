@@ -144,6 +144,7 @@ def test_an_arm_picks_by_a_face_with_room(tmp_path, shape):
     assert result.outcome == "passed", (result.steps, result.verdicts)
 
 
+@pytest.mark.nightly
 def test_a_load_that_hangs_at_rest_drops_when_it_is_accelerated(tmp_path):
     """A cup holds 75 N: 7 kg hang from it, and fall at the first upward jerk of 1.5 m/s^2."""
     push = "inject: {push: {plate: [0, 0, %s]}, push_duration: 0.1}"

@@ -130,7 +130,7 @@ def test_no_joint_positions_reach_an_unreachable_pose(chain, any_orientation):
         assert np.linalg.norm(last.translation - centre) > radius * 1.0009
 
 
-@pytest.mark.nightly(but=["ur3e"])
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @EACH_ARM
 def test_lines_are_straight_and_their_joints_never_jump(chain):
     lengths = []
