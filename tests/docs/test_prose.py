@@ -40,6 +40,9 @@ ALLOWED = re.compile(
 )
 """Spatial `behind`, `lags behind`, `come to rest`, `tell()` of files and cmaes, `ik_test.json`."""
 
+LIKELY = re.compile("|".join(INSTEAD))
+"""What a text in small letters has where it has a word; much faster than the words themselves."""
+
 WORD = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(INSTEAD)})(?![A-Za-z])", re.IGNORECASE)
 FOLDERS = ("harness", "tests", "docs", "scenarios", "robots", "worlds")
 SUFFIXES = {".py", ".js", ".css", ".html", ".md", ".yaml", ".toml"}
@@ -71,7 +74,7 @@ def advice(word):
 def dialect(name, text):
     """A message for each word of a text that has a plainer one; names are split into words."""
     text = re.sub(r"(?<=[a-z])(?=[A-Z])|_+", " ", text)
-    if not WORD.search(text):
+    if not LIKELY.search(text.lower()):
         return
     for number, line in enumerate(text.splitlines(), 1):
         for word in WORD.findall(ALLOWED.sub("", line)) if WORD.search(line) else ():

@@ -156,6 +156,11 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert done.returncode == 2
     assert "formula.scenario.yaml:1:15" in done.stdout + done.stderr
     assert "no plug-in reads such a file" in done.stdout + done.stderr
+
+
+@pytest.mark.nightly
+def test_keys_and_grippers_of_a_plug_in_are_refused_at_their_place(core, tmp_path):
+    file = tmp_path / "key.scenario.yaml"
     for key, value in (
         ("mount", "{pedestal: [0.2, 0.2, 0.5]}"),
         ("moveit", "{kinematics: k.yaml}"),
@@ -166,18 +171,18 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
         )
         done = core("check", file)
         assert done.returncode == 2
-        assert "formula.scenario.yaml:2:4" in done.stdout + done.stderr
+        assert "key.scenario.yaml:2:4" in done.stdout + done.stderr
         assert "no plug-in applies this key here" in done.stdout + done.stderr
     arm = "{model: open_manipulator_x}"
     file.write_text(f"scenario: t\nrobots: {{a: {arm}, b: {arm}}}\nsteps: [{{wait: 1}}]\n")
     done = core("check", file)
     assert done.returncode == 2
-    assert "formula.scenario.yaml:2:9" in done.stdout + done.stderr
+    assert "key.scenario.yaml:2:9" in done.stdout + done.stderr
     assert "no plug-in applies this key here" in done.stdout + done.stderr
     file.write_text("scenario: t\nrobot: {model: suction_cup}\nsteps: [{gripper: on}]\n")
     done = core("check", file)
     assert done.returncode == 2
-    assert "formula.scenario.yaml:2:8" in done.stdout + done.stderr
+    assert "key.scenario.yaml:2:8" in done.stdout + done.stderr
     assert "no plug-in holds by `cups` here" in done.stdout + done.stderr
     file.write_text(
         "scenario: t\nrobot: {model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}\n"
@@ -185,7 +190,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     )
     done = core("check", file)
     assert done.returncode == 2
-    assert "formula.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
+    assert "key.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
     file.write_text(
         "scenario: t\nrobot: open_manipulator_x\n"
         "steps: [{move_to: {named_target: home, path_constraints: {joints: {"
@@ -193,7 +198,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     )
     done = core("check", file)
     assert done.returncode == 2
-    assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    assert "key.scenario.yaml:3:" in done.stdout + done.stderr
     assert "no plug-in applies this key here" in done.stdout + done.stderr
     (tmp_path / "box.obj").write_text(OBJ)
     file.write_text(
@@ -202,7 +207,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     )
     done = core("check", file)
     assert done.returncode == 2
-    assert "formula.scenario.yaml:4:11" in done.stdout + done.stderr
+    assert "key.scenario.yaml:4:11" in done.stdout + done.stderr
     assert "convex parts cannot be computed: no plug-in computes them" in done.stdout + done.stderr
     file.write_text(
         "scenario: t\nrobot: open_manipulator_x\nplanning: {planner_id: RRTstar}\n"
@@ -210,7 +215,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     )
     done = core("check", file)
     assert done.returncode == 2
-    assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    assert "key.scenario.yaml:3:" in done.stdout + done.stderr
     assert "there is no path finder 'ompl'" in done.stdout + done.stderr
     part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
     assert part.returncode == 2

@@ -153,7 +153,14 @@ def test_a_gripper_takes_the_place_of_the_arms_own():
     assert T_link5_tcp.rotation @ [0, 0, 1] == pytest.approx([1, 0, 0], abs=1e-12)
 
 
-@pytest.mark.nightly(but=["open_manipulator_x-rh_p12_rn_a", "ur3e-suction_cup", "ur5e-suction_array", "ur5e-rh_p12_rn_a"])
+@pytest.mark.nightly(
+    but=[
+        "open_manipulator_x-rh_p12_rn_a",
+        "ur3e-suction_cup",
+        "ur5e-suction_array",
+        "ur5e-rh_p12_rn_a",
+    ]
+)
 @pytest.mark.parametrize("gripper", gripper_names())
 @pytest.mark.parametrize("model", [name for name in robot_names() if name not in gripper_names()])
 def test_every_gripper_goes_on_every_arm(model, gripper):

@@ -269,9 +269,8 @@ steps:
 """
 
 
-@pytest.mark.parametrize(
-    "arms", [("left", "right"), pytest.param(("right", "left"), marks=pytest.mark.nightly)]
-)
+@pytest.mark.nightly
+@pytest.mark.parametrize("arms", [("left", "right"), ("right", "left")])
 def test_an_arm_in_the_way_at_the_end_is_refused_with_the_moment(arms, recorded_run):
     stored = read_run(recorded_run(NEIGHBOURS % arms, "failed") / "run")
     first, second = stored.run.steps[2:]

@@ -61,12 +61,12 @@ def parts(tmp_path_factory):
     folder = tmp_path_factory.mktemp("parts")
     (folder / "sampled.scenario.yaml").write_text(SAMPLED.replace("EARLY", "true"))
     (folder / "grid.scenario.yaml").write_text(GRID)
-    whole = harness("run", ".", "--report-dir", "whole", "--no-page", cwd=folder)
+    words = ("--no-page", "--in-process")
+    whole = harness("run", ".", "--report-dir", "whole", *words, cwd=folder)
     codes = []
     for number in (1, 2, 3):
         part = harness(
-            "run", ".", "--shard", f"{number}/3", "--report-dir", f"at{number}", "--no-page",
-            "--in-process", cwd=folder,
+            "run", ".", "--shard", f"{number}/3", "--report-dir", f"at{number}", *words, cwd=folder
         )  # fmt: skip
         codes.append(part.returncode)
     assert whole.returncode == 1  # one case of the grid waits too long
