@@ -51,7 +51,7 @@ class InverseDynamics:
         space = self._space
         columns = space.robot.velocity_columns
         q = space.robot.configuration(space.whole(positions))
-        pool, _ = _loaded(space.robot, self.payloads)
+        pool, _, _ = _loaded(space.robot, self.payloads)
         v, a, found = np.zeros((3, len(positions), space.robot.model.nv))
         v[:, columns], a[:, columns] = velocities @ space.matrix.T, accelerations @ space.matrix.T
         pin.rneaInParallel(1, pool, q.T, v.T, a.T, found.T)  # on one thread
@@ -62,19 +62,26 @@ class InverseDynamics:
     ) -> bool:
         """Whether efforts of states (N, dof) are surely within a share of the limits; fast."""
         space, gravity = self._space, self._space.robot.model.gravity.linear
-        _, joints = _loaded(space.robot, self.payloads)
+        _, joints, _ = _loaded(space.robot, self.payloads)
         drive = space.matrix[np.argsort(space.robot.velocity_columns)]
         states = np.array([positions, velocities, accelerations]) @ drive.T
         states[0] += space.offset[np.argsort(space.robot.velocity_columns)]
         efforts = call("efforts", (joints, gravity, states), np.empty_like(states[0])) @ drive
         return bool(np.all(np.abs(efforts) <= self.limits * (share - ROUNDING)))
 
+    @property
+    def holds_anywhere(self) -> bool:
+        """Whether the limits exceed what gravity needs at most, however the arm stands."""
+        order = np.argsort(self._space.robot.velocity_columns)
+        _, _, most = _loaded(self._space.robot, self.payloads)
+        return bool(np.all(most @ np.abs(self._space.matrix[order]) < self.limits))
+
     def can_hold(self, positions: FloatArray) -> bool:
         """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
         still = np.zeros_like(positions)
-        return self.are_clearly_within(1.0, positions, still, still) or bool(
-            np.all(np.abs(self.efforts(positions, still, still)) <= self.limits)
-        )
+        if self.holds_anywhere or self.are_clearly_within(1.0, positions, still, still):
+            return True
+        return bool(np.all(np.abs(self.efforts(positions, still, still)) <= self.limits))
 
     def standing_overload(
         self, positions: FloatArray, where: str = "on the way"
@@ -114,8 +121,11 @@ class InverseDynamics:
 @lru_cache(maxsize=4)
 def _loaded(
     robot: RobotModel, payloads: tuple[SceneObject, ...]
-) -> tuple[pin.ModelPool, FloatArray]:
-    """The model with its payloads, and its joints as native/efforts.c reads them, (nv, 27)."""
+) -> tuple[pin.ModelPool, FloatArray, FloatArray]:
+    """The model with its payloads, and its joints as native/efforts.c reads them, (nv, 27).
+
+    Last, what gravity needs of each at most: all weight at the end of a straightened chain, (nv,).
+    """
     model, joints = robot.model.copy(), robot.description.joint_by_name
     for payload in payloads:
         assert payload.link is not None
@@ -129,4 +139,11 @@ def _loaded(
         kind = [known.kind == "prismatic", model.parents[joint] - 1]
         body = model.inertias[joint].toDynamicParameters()
         rows.append(np.concatenate([at.rotation.ravel(), at.translation, known.axis, kind, body]))
-    return pin.ModelPool(model, 1), np.array(rows)
+    most, carried = np.zeros(len(rows)), np.zeros((len(rows) + 1, 2))  # moment, mass; base last
+    for joint in reversed(range(len(rows))):
+        known, row = joints[model.names[joint + 1]], rows[joint]
+        moment, mass = carried[joint] + (np.linalg.norm(row[18:21]), row[17])
+        away = max(abs(known.lower), abs(known.upper)) if row[15] else 0.0
+        most[joint] = mass if row[15] else moment
+        carried[int(row[16])] += moment + (np.linalg.norm(row[9:12]) + away) * mass, mass
+    return pin.ModelPool(model, 1), np.array(rows), np.linalg.norm(model.gravity.linear) * most

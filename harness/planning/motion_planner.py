@@ -17,7 +17,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.diagnosis import explained
 from harness.planning.free_motion import find_motion
 from harness.planning.goals.goal_choice import choose_goals
-from harness.planning.goals.goals import GoalCandidates, find_goals
+from harness.planning.goals.goals import find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing.limits import Limits, TimingError
@@ -33,7 +33,6 @@ from harness.ports.motions import (
     TimedMotion,
 )
 from harness.recording.motion_failures import DurationFailure
-from harness.robot.description import RobotDescription
 
 STATE_CHECKS_PER_SECOND = 200_000
 """What a second of `planning_time` is worth in state checks, on every machine.
@@ -49,11 +48,6 @@ class VerifiedPlanner:
     def __init__(self, scene: CoalScene, kinematics: PinocchioKinematics) -> None:
         self.scene = scene
         self.kinematics = kinematics
-
-    @property
-    def description(self) -> RobotDescription:
-        """The robot for which motions are planned."""
-        return self.scene.description
 
     def plan(self, request: MotionRequest) -> MotionPlan:
         """Plan a motion without collision, timed and verified."""
@@ -82,12 +76,13 @@ class VerifiedPlanner:
             raise TypeError("only the goal of a free motion can be checked alone")
         motion = request.motion
         with explained(request, self.scene, self.kinematics):
-            found = self._goals(self._task(request, motion.constraints), request, motion)
+            task, start = self._task(request, motion.constraints), np.asarray(request.start)
+            found = choose_goals(self.kinematics, task, start, motion.goal)
             return CheckedGoal(found.positions[0], found.explanation)
 
     def _free(self, request: MotionRequest, motion: FreeMotion) -> MotionPlan:
         task = self._task(request, motion.constraints)
-        found = self._goals(task, request, motion)
+        found = choose_goals(self.kinematics, task, np.asarray(request.start), motion.goal)
         explanation = found.explanation + task.lowered_margins
         try:
             if task.held is not None:
@@ -125,11 +120,6 @@ class VerifiedPlanner:
         task.accept(trajectory, end, "the direct joint motion")
         statistics = task.statistics("PTP", trajectory, [task.start, end])
         return MotionPlan(trajectory, Details.of(statistics), task.lowered_margins)
-
-    def _goals(
-        self, task: PlanningTask, request: MotionRequest, motion: FreeMotion
-    ) -> GoalCandidates:
-        return choose_goals(self.kinematics, task, np.asarray(request.start), motion.goal)
 
     def _task(
         self, request: MotionRequest, constraints: PathConstraints | None = None

@@ -72,7 +72,7 @@ class PlanningTask:
         After the first such path, all edges are checked for that too.
         """
         dynamics = self.limits.dynamics
-        if dynamics is None:
+        if dynamics is None or dynamics.holds_anywhere:
             return None
         states = SampledMotion.of(path, self.space.metric, HOLD_RESOLUTION).states()
         if dynamics.can_hold(states):

@@ -61,6 +61,19 @@ def test_efforts_at_rest_hold_the_weight_of_a_load_against_the_work_it_does():
     assert np.allclose(loaded - bare, 2.0 * 9.81 * np.array(heights), atol=1e-4)
 
 
+@pytest.mark.parametrize("mass", [0, 1.0, 40.0])
+def test_limits_above_the_bound_of_gravity_hold_the_arm_wherever_it_stands(mass):
+    """The bound is above what a thousand positions need, and not above three times of it."""
+    dynamics = dynamics_of(cell_with(mass))
+    drawn = np.random.default_rng(3).uniform(-np.pi, np.pi, (1000, 6))
+    still = np.zeros_like(drawn)
+    needed = np.abs(dynamics.efforts(drawn, still, still)).max(axis=0)
+    assert not replace(dynamics, limits=needed * 0.99).holds_anywhere
+    moves_a_lot = needed > 0.5 * needed.max()  # the shoulder; a wrist's chain is never straight
+    limits = np.where(moves_a_lot, 3 * needed, 1e6)
+    assert replace(dynamics, limits=limits).holds_anywhere
+
+
 @pytest.mark.parametrize("way", ["straight", "toppra"])
 def test_a_motion_is_slowed_until_its_efforts_are_kept(way):
     dynamics = dynamics_of(cell_with(1.0))

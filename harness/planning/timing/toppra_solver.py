@@ -26,12 +26,14 @@ def fastest(
     states = path.evaluate(grid)
     bounds = [each for each in (joint_bounds(states, limits), link_bounds) if each is not None]
     rates = _rates(bounds, grid)
-    positions, first, second = states
-    growths = np.append(0.5 * np.diff(rates**2) / np.diff(grid), 0.0)[:, None]
+    (positions, first, second), steps = states, np.diff(grid)
+    growths = np.append(0.5 * np.diff(rates**2) / steps, 0.0)[:, None]
     velocities, squares = first * rates[:, None], (rates**2)[:, None]
     if limits.effort_excess(positions, velocities, second * squares + first * growths) > 1.0:
         rates = _rates([*bounds, _effort_bounds(states, limits)], grid)
-    return _timed(path, grid, rates)
+    growths = 0.5 * np.diff(rates**2) / steps
+    ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])
+    return lambda times: path.timed(times, (ends, grid, rates, growths)), float(ends[-1])
 
 
 def joint_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
@@ -59,11 +61,3 @@ def _rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray:
     if squares is None:
         raise TimingError("TOPP-RA found no times under the limits")
     return np.sqrt(squares)
-
-
-def _timed(path: PiecewiseCubic, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
-    """The path with constant acceleration of its parameter on each step, and its duration."""
-    steps = np.diff(grid)
-    growths = 0.5 * np.diff(rates**2) / steps
-    ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])
-    return lambda times: path.timed(times, (ends, grid, rates, growths)), float(ends[-1])
