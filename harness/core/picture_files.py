@@ -44,6 +44,21 @@ def decoded(content: bytes) -> Pixels | None:
         return None
 
 
+def pixels_of(content: bytes) -> int:
+    """The number of pixels of a PNG or JPEG file by its header; nothing is unpacked.
+
+    Raises:
+        ValueError: It is neither, or its header is damaged.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            width, height = Image.open(io.BytesIO(content), formats=("PNG", "JPEG")).size
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+        raise ValueError("it is neither a PNG nor a JPEG picture") from error
+    return width * height
+
+
 def colours(content: bytes) -> Pixels | None:
     """The pixels of a file as RGB; None where they cannot be read."""
     pixels = decoded(content)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from harness.core.details import Detail, Details
 from harness.core.types import Floats, Pair
@@ -14,13 +14,7 @@ from harness.recording.plain import PlainError, from_plain
 StageName = Literal["reach", "inverse kinematics", "start state", "path", "time parameterisation"]
 StageStatus = Literal["passed", "failed", "skipped"]
 
-STAGES: tuple[StageName, ...] = (
-    "reach",
-    "inverse kinematics",
-    "start state",
-    "path",
-    "time parameterisation",
-)
+STAGES: tuple[StageName, ...] = get_args(StageName)
 """In the order in which they are reported."""
 
 

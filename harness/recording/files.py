@@ -9,7 +9,6 @@ from pathlib import Path, PurePosixPath
 from harness.core.errors import Problem, SpecError
 from harness.core.files import read_at_most, write_whole
 from harness.core.limits import PICTURE_FILE, PICTURE_PIXELS
-from harness.recording.picture_size import pixels_of
 
 OTHERS = (".mp4", ".webm", ".npz")  # files of cameras that are no pictures
 
@@ -24,6 +23,8 @@ class FolderFiles(Mapping[str, bytes]):
     def __getitem__(self, name: str) -> bytes:
         if name not in self._names:
             raise KeyError(name)
+        from harness.core.picture_files import pixels_of  # Pillow takes time
+
         path = self._folder / name
         try:
             if not (self._folder / checked(name)).resolve().is_relative_to(self._folder.resolve()):

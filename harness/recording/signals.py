@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from harness.core.types import FloatArray, Floats, IntArray, Pair
+
+ByPair = dict[Pair, FloatArray]
+ByName = dict[str, FloatArray]
 
 UNPUBLISHED = (
     *("contact_forces", "presses", "frictions", "pulls", "support_forces"),
@@ -143,28 +144,18 @@ class Signals:
     joint_commands: FloatArray
     joint_command_velocities: FloatArray
     tcp_pose: FloatArray
-    frames: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
-    object_poses: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
-    contact_forces: Mapping[Pair, FloatArray] = field(
-        default_factory=dict[tuple[str, str], FloatArray]
-    )
-    presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
-    frictions: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
-    pulls: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
-    wrenches: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
-    surfaces: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
-    support_forces: Mapping[Pair, FloatArray] = field(
-        default_factory=dict[tuple[str, str], FloatArray]
-    )
-    slides: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
-    clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
-    clearance_links: Mapping[Pair, IntArray] = field(
-        default_factory=dict[tuple[str, str], np.ndarray]
-    )
-    planned_clearances: Mapping[Pair, FloatArray] = field(
-        default_factory=dict[tuple[str, str], FloatArray]
-    )
-    link_overlaps: Mapping[Pair, FloatArray] = field(
-        default_factory=dict[tuple[str, str], FloatArray]
-    )
+    frames: Mapping[str, FloatArray] = field(default_factory=ByName)
+    object_poses: Mapping[str, FloatArray] = field(default_factory=ByName)
+    contact_forces: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    presses: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    frictions: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    pulls: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    wrenches: Mapping[str, FloatArray] = field(default_factory=ByName)
+    surfaces: Mapping[str, FloatArray] = field(default_factory=ByName)
+    support_forces: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    slides: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    clearances: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    clearance_links: Mapping[Pair, IntArray] = field(default_factory=dict[Pair, IntArray])
+    planned_clearances: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
+    link_overlaps: Mapping[Pair, FloatArray] = field(default_factory=ByPair)
     clearance_cutoff: float = 0.15
