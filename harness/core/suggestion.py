@@ -24,6 +24,7 @@ SYNONYMS = {
     "at_least": ("min", "minimum"),
     "scenario": ("name", "title"),
     "world": ("name", "title"),
+    "model": ("ur_type",),
 }
 """Keys of this language, and what other programs call them; verbs and predicates state theirs."""
 

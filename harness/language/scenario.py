@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self, cast
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
 from harness.core.errors import RobotError
 from harness.core.geometry import CollisionMode
 from harness.language.base import (
-    Flag,
     JointAcceleration,
     JointEffort,
     JointValue,
@@ -166,15 +165,6 @@ class RobotSpec(SpecModel):
         default=None, description="The start state; the default comes from the robot's folder."
     )
 
-    @model_validator(mode="before")
-    @classmethod
-    def _course_word(cls, value: Any) -> Any:
-        given: object = value
-        robot = cast("dict[str, Any]", given if isinstance(given, dict) else {})
-        if "ur_type" not in robot or "model" in robot:
-            return value
-        return {("model" if key == "ur_type" else key): item for key, item in robot.items()}
-
     @model_validator(mode="after")
     def _one_source(self) -> RobotSpec:
         sources = ("model", "urdf", "xacro", "mjcf", "sdf")
@@ -270,9 +260,6 @@ class ScenarioContent(SpecModel):
     )
     ros2: Annotated[KeyModel, PluginModel("ros2")] | None = Field(
         default=None, description="Names that `harness bridge` serves on the ROS 2 graph."
-    )
-    deterministic: Flag = Field(
-        default=True, description="`false` allows planners whose result cannot be repeated."
     )
     steps: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
         description="The steps that the arm executes, in order."

@@ -68,7 +68,6 @@ class Joint(LinkJoint):
         acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
         effort: Effort limit from a data sheet.
         mimic: The relation to the joint that this joint mimics; None for a driven joint.
-        command_interfaces: Its command interfaces in ros2_control; the program commands efforts.
     """
 
     lower: float = -np.inf
@@ -80,7 +79,6 @@ class Joint(LinkJoint):
     damping: float = 0.0
     friction: float = 0.0
     mimic: Mimic | None = None
-    command_interfaces: tuple[str, ...] = ()
     is_velocity_assumed: bool = False
 
     @property

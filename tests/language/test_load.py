@@ -174,10 +174,9 @@ def test_the_field_until_is_found_though_the_tag_has_its_name():
     assert loaded.lines.line_of(("expect", 0, "predicate", "object")) == (5, line.index("a}") + 1)
 
 
-def test_the_course_may_write_ur_type():
-    assert (
-        parse("scenario: x\nrobot: {ur_type: ur3e}\nsteps: [settle]").scenario.robot.model == "ur3e"
-    )
+def test_a_key_of_another_program_is_met_with_the_key_here():
+    (problem,) = problems("scenario: x\nrobot: {ur_type: ur3e}\nsteps: [settle]")
+    assert "did you mean `model`?" in problem.hint
 
 
 def test_on_is_a_key_and_a_predicate():

@@ -92,10 +92,6 @@ def test_a_scenario_adds_states_and_says_where_the_robot_starts():
     assert 'name="ready"' in description.srdf
 
 
-def test_ur_type_is_a_model_as_the_course_writes_it():
-    assert robot(ur_type="ur3e").name == "ur3e"
-
-
 def test_a_folder_next_to_the_scenario_is_a_robot(tmp_path):
     shutil.copytree(data_folder("robots") / "open_manipulator_x", tmp_path / "mine")
     spec = RobotSpec.model_validate({"model": "mine"})

@@ -45,7 +45,7 @@ def smoke(folder, model):
         "hold": top + 0.085,
         "above": top + 0.2, "half": top / 2, "height": top, "down": "[0.924, -0.383, 0, 0]",
     }  # fmt: skip
-    chosen = f"{{ur_type: {model}, gripper: rh_p12_rn_a}}"
+    chosen = f"{{model: {model}, gripper: rh_p12_rn_a}}"
     return run(folder, STEPS.format(**words), robot=chosen, rest=REST.format(**words))
 
 

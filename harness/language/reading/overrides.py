@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, get_args, get_origin
 from harness.core.errors import Problem, SpecError
 from harness.core.suggestion import did_you_mean
 from harness.language.annotations import bare, branches, is_model, keys_of
-from harness.language.base import Rpy, SpecModel
+from harness.language.base import Rpy
 from harness.language.expectation import ExpectationFields, PredicateFields
 from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place, Source, located
@@ -17,7 +17,7 @@ from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, TEMPORAL,
 from harness.language.reading.params import PARAMS
 from harness.language.reading.short_forms import expanded
 from harness.language.reading.written import as_written
-from harness.language.scenario import RobotSpec, Scenario
+from harness.language.scenario import Scenario
 from harness.language.step import STEPS, StepFields
 
 NO_ROTATION = (0.0, 0.0, 0.0)  # where `rpy` is absent and an angle is set
@@ -126,7 +126,7 @@ class _Setter:
             return self.override.value
         kind = _kind(item, annotation)
         if is_model(kind):
-            item = _opened(item, kind)
+            item = item if isinstance(item.value, dict) else expanded(item, kind)
         if isinstance(item.value, dict):
             return self._in_mapping(item, kind, parts)
         if isinstance(item.value, list):
@@ -138,7 +138,7 @@ class _Setter:
 
     def _in_mapping(self, item: Located, kind: Any, parts: list[str]) -> Located:
         entries = item.mapping()
-        part, rest = _key(parts, item, kind)
+        part, rest = _key(parts, item)
         annotation, default = _field(kind, part)
         place = self.override.value.place
         old = entries.get(part)
@@ -198,24 +198,16 @@ def _kind(item: Located, annotation: Any) -> Any:
     return chosen[0] if chosen else None
 
 
-def _opened(item: Located, model: type[SpecModel]) -> Located:
-    """A bare value as the field that it is short for, so that its neighbours can be set."""
-    is_ready = isinstance(item.value, dict) and not issubclass(model, RobotSpec)
-    return item if is_ready else expanded(item, model)
-
-
-def _key(parts: list[str], item: Located, kind: Any) -> tuple[str, list[str]]:
+def _key(parts: list[str], item: Located) -> tuple[str, list[str]]:
     """The key that a path continues with, and the rest of the path.
 
-    A key of the file may have dots, as those of `randomize` have: `randomize.params.w.choice`. The
-    course's `ur_type` is `model`.
+    A key of the file may have dots, as those of `randomize` have: `randomize.params.w.choice`.
     """
     entries = item.mapping()
     for taken in range(len(parts), 1, -1):
         if (key := ".".join(parts[:taken])) in entries:
             return key, parts[taken:]
-    is_alias = kind is RobotSpec and parts[0] == "ur_type" and "ur_type" not in entries
-    return "model" if is_alias else parts[0], parts[1:]
+    return parts[0], parts[1:]
 
 
 def _field(kind: Any, key: str) -> tuple[Any, Any]:

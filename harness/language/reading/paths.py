@@ -48,7 +48,7 @@ def paths_from(root: Located, old: Path, new: Path) -> Located:
 
 
 def _is_folder(key: str, item: Located) -> bool:
-    is_part = key in ("model", "ur_type", "gripper")
+    is_part = key in ("model", "gripper")
     return is_part and isinstance(item.value, str) and "/" in item.value
 
 

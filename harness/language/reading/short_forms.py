@@ -330,8 +330,6 @@ def _models_in(annotation: Any) -> list[type[SpecModel]]:
 
 def expanded(item: Located, model: type[SpecModel]) -> Located:
     """A bare value as the field it is short for; a mapping as it is."""
-    if issubclass(model, RobotSpec):
-        return course_words(item)
     if isinstance(item.value, dict):
         items_are_models = model.short_is_list and _list_of_models(model)
         if not items_are_models or model.short in item.value or not item.value:
@@ -348,17 +346,6 @@ def _is_no_name(value: object, model: type[SpecModel]) -> bool:
     if isinstance(value, str) or bare(keys_of(model)[model.short].annotation) is not str:
         return False
     return isinstance(value, list) or bool(written_under(model, keys_of(model), value))
-
-
-def course_words(robot: Located) -> Located:
-    """`robot: ur3e`, and `ur_type: ur3e` as the course writes it, are short for `model: ur3e`."""
-    if isinstance(robot.value, str):
-        return Located({"model": Entry(robot.place, robot)}, robot.place)
-    entries = robot.mapping()
-    if "ur_type" not in entries or "model" in entries:
-        return robot
-    renamed = {("model" if key == "ur_type" else key): entry for key, entry in entries.items()}
-    return Located(renamed, robot.place)
 
 
 def _list_of_models(model: type[SpecModel]) -> bool:

@@ -86,8 +86,6 @@ def _schema_of(model: type[SpecModel], title: str) -> Schema:
     own: dict[str, Schema] = {}
     for name, definition in definitions.items():
         own[name] = _with_short_form(_written(definition), definition[MODEL])
-    if "RobotSpec" in own:
-        _accept_ur_type(own["RobotSpec"])
     if model is Scenario:
         own |= _language(own, {each: _name(names[each, "validation"]) for each in models})
     reached = own.pop(_name(names[model, "validation"]))
@@ -196,14 +194,6 @@ def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
         return mapping
     description = mapping.pop("description", "")
     return {"description": description, "anyOf": branches}
-
-
-def _accept_ur_type(robot: Schema) -> None:
-    properties = robot["anyOf"][0]["properties"]
-    properties["ur_type"] = {
-        "type": "string",
-        "description": "The model; the course's word for `model`.",
-    }
 
 
 def _language(

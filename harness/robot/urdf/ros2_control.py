@@ -1,4 +1,4 @@
-"""Reads a URDF's `<ros2_control>`: command interfaces of joints and their limits."""
+"""Reads a URDF's `<ros2_control>`: the limits of its command interfaces."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ Ignored = dict[tuple[str, str, float], list[str]]
 def with_interfaces(
     joints: Sequence[Joint], root: XmlElement, notes: list[str]
 ) -> tuple[Joint, ...]:
-    """The joints with their command interfaces, limited by the interfaces' `min` and `max`.
+    """The joints, limited by the `min` and `max` of their command interfaces.
 
-    The program drives every joint by its effort; the interfaces' names are kept for users. Their
-    bounds only narrow `<limit>`, as in ros2_control's limiter.
+    The program drives every joint by its effort. The bounds only narrow `<limit>`, as in
+    ros2_control's limiter.
 
     Raises:
         SpecError: A bound is not a number, or a range is empty; all of them, located.
@@ -53,13 +53,12 @@ def with_interfaces(
 
 
 def _narrowed(joint: Joint, command: XmlElement, ignored: Ignored) -> Joint:
-    """The joint with a command interface and its bounds.
+    """The joint with the bounds of a command interface.
 
     Velocity and effort are limited in both directions, so that a `min` of zero or more, or a `max`
     of zero or less, limits nothing; vendors write them where they mean a magnitude.
     """
     interface = command.need("name")
-    joint = replace(joint, command_interfaces=(*joint.command_interfaces, interface))
     bounds = {
         param.get("name"): text_number(param)
         for param in command.findall("param")
