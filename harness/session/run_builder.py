@@ -48,15 +48,14 @@ class RunBuilder:
 
     def observe(self) -> None:
         """Measure distances; for a report, find what only it shows besides pictures."""
-        prepared, program = self._prepared, self._prepared.program
+        prepared = self._prepared
         self._signals = observed_signals(prepared, self.record)
         folder = self._request.report_dir
         if folder is None:
             return
         self._findings = report_findings(prepared, self.record, self._signals)
         self._contacts = contact_records(self.record)
-        seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
-        self.resolved = resolved_text(prepared.loaded, seeds, folder=folder)
+        self.resolved = resolved_text(prepared.loaded, folder=folder)
 
     def build(self, captures: Captures) -> Run:
         """The whole run, with the pictures that its cameras took."""

@@ -71,25 +71,6 @@ def test_parameters_and_overrides_are_applied():
     assert "  - move_to: mogi_home\n" in text
 
 
-def test_step_seeds_are_comments_above_the_steps():
-    text = """\
-scenario: x
-robot: ur3e
-steps:
-  - gripper: open
-    name: "first\\nstep"
-  - repeat: {times: 2, steps: [settle, {wait: 1}]}
-"""
-    loaded = parse_scenario(text, Path("f.yaml"))
-    seeds = {("steps", 0): 5, ("steps", 1): 6, ("steps", 1, "steps", 1): 7}
-    written = resolved_text(loaded, seeds)
-    lines = written.splitlines()
-    for seed, step in ((5, "- gripper: open"), (6, "- repeat:"), (7, "- wait: 1")):
-        at = lines.index(next(line for line in lines if line.strip() == f"# seed {seed}"))
-        assert lines[at + 1].strip() == step
-    assert parse_scenario(written, Path("f.yaml")).scenario == loaded.scenario
-
-
 def test_text_that_looks_like_a_reference_is_escaped():
     text = "scenario: a $${b} c\nrobot: ur3e\nsteps: [settle]\n"
     loaded = parse_scenario(text, Path("f.yaml"))
