@@ -16,7 +16,6 @@ from harness.language.reading.varied_paths import as_json, choices
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.reporting.explanation import explanation_lines
-from harness.robot.link_masses import mass_notes
 from harness.session.predict import predict, touches_at_start, unexpected
 from harness.session.prepare import prepare
 from harness.session.start import overlap_note, start_physics
@@ -86,7 +85,6 @@ def check_file(
         notes=(
             *(finding.message for finding in prepared.about_file),
             *prepared.notes,
-            *(f"robot: {note}" for note in mass_notes(program.description)),
             *(overlap_note(prepared, touch) for touch in overlaps),
             *(_touch_note(each) for each in touches if {each.first, each.second} not in known),
         ),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.solids import TRIANGLE_SLACK
+from harness.plugins.authoring.doubtful_masses import principal_moments
 from harness.robot.description import RobotDescription
-from harness.robot.link_masses import principal_moments
 from harness.robot.mechanism import Inertial
 from harness.robot.urdf.links import corrected_note
 

@@ -11,13 +11,13 @@ from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring.agreement import link_poses_in_physics
+from harness.plugins.authoring.doubtful_masses import mass_notes
 from harness.plugins.authoring.ik_trial import IkTrial
 from harness.plugins.authoring.mass_problems import mass_problems
 from harness.plugins.authoring.pair_statistics import SelfTouches
 from harness.plugins.authoring.robot_report import RobotFinding
 from harness.robot.collision_shapes import mesh_shapes
 from harness.robot.description import RobotDescription
-from harness.robot.link_masses import mass_notes
 from harness.robot.mechanism import Link
 from harness.robot.solids import box_corners, coal_geometry
 
