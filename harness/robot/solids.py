@@ -51,13 +51,6 @@ def box_corners(solid: Any) -> FloatArray:
     return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
 
 
-def hull_corners(solid: Any) -> FloatArray:
-    """Corners of a convex hull; of another of Coal's geometries those of its box, (n, 3) [m]."""
-    if hasattr(solid, "points"):
-        return np.array(solid.points(), dtype=float).reshape(-1, 3)
-    return box_corners(solid)
-
-
 def nearest_point(shapes: Iterable[Shape], point: FloatArray) -> FloatArray:
     """The point of shapes that is nearest to a point, that point inside one, shape (3,) [m]."""
     import coal

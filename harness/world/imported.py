@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
-from harness.language.files.source import Place
 from harness.language.world import WorldSpec
 
 
@@ -30,24 +29,6 @@ class Note:
     def __str__(self) -> str:
         more = f" ({self.count} times; here first)" if self.count > 1 else ""
         return f"{self.path}:{self.line}: {self.message}{more}"
-
-
-class Notes:
-    """Collects notes; equal messages of a file become one note with a count."""
-
-    def __init__(self) -> None:
-        self._found: dict[tuple[str, str], Note] = {}
-
-    def add(self, place: Place, message: str) -> None:
-        """Add a note at a place."""
-        key = (place.source.path, message)
-        known = self._found.get(key)
-        line, count = (known.line, known.count + 1) if known else (place.line, 1)
-        self._found[key] = Note(place.source.path, line, message, count)
-
-    def all(self) -> tuple[Note, ...]:
-        """Every note, by file and line."""
-        return tuple(sorted(self._found.values(), key=lambda note: (note.path, note.line)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from harness.language.files.xml_file import XmlElement
-from harness.world.imported import Notes
+from harness.plugins.formats.notes import Notes
 
 LEFT_OUT: Mapping[str, str] = {
     "actuator": "objects have no motors; those of a robot belong to `robot:`",

@@ -22,13 +22,14 @@ from harness.plugins.formats.mjcf_robot.compiled import compile_mjcf, driven_tre
 from harness.plugins.formats.mjcf_robot.files import read_tree
 from harness.plugins.formats.mjcf_robot.joints import mjcf_pose
 from harness.plugins.formats.mjcf_robot.mjcf import UNNAMED
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import first_mistake, pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
 from harness.plugins.formats.sdf.world import LONGEST_STEP, SHORTEST_STEP
 from harness.robot.packages import PackagePath
 from harness.robot.tree import free_name
-from harness.world.imported import ImportedWorld, Notes
+from harness.world.imported import ImportedWorld
 
 LONGEST_NAME = 100
 KINDS: dict[int, Literal["hinge", "slide"]] = {2: "slide", 3: "hinge"}  # of mjtJoint

@@ -18,11 +18,11 @@ from harness.language.files.xml_file import XmlElement
 from harness.language.world import FrictionSpec, ShapeSpec
 from harness.plugins.formats.mjcf.elements import Elements
 from harness.plugins.formats.mjcf_robot.joints import mjcf_pose
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.round_meshes import ellipsoid
 from harness.plugins.formats.sdf.values import validated
 from harness.robot.mesh_file import SUFFIXES
-from harness.world.imported import Notes
 
 PLAIN = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's colour of a geom without a colour or a material
 

@@ -15,9 +15,10 @@ from harness.plugins.formats.moveit_messages.values import (
     quaternion,
     text,
 )
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import rounded
 from harness.plugins.formats.yaml_data import number, read_data, refuse
-from harness.world.imported import Note, Notes
+from harness.world.imported import Note
 
 KEYS = ("goal_constraints", "start_state", "group_name")
 IGNORED = ("path_constraints", "trajectory_constraints", "reference_trajectories")

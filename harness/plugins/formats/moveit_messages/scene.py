@@ -23,12 +23,13 @@ from harness.plugins.formats.moveit_messages.values import (
     refused_at,
     text,
 )
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import LEAST_NORMAL, THICK_PLANE, plane_pose, pose_spec
 from harness.plugins.formats.stl import Triangles, add_mesh, cone
 from harness.plugins.formats.yaml_data import number, read_data, refuse
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.srdf.srdf import link_pair
-from harness.world.imported import Note, Notes
+from harness.world.imported import Note
 
 KEYS = ("world", "robot_model_name")
 PRIMITIVES = {"1": "box", "2": "sphere", "3": "cylinder", "4": "cone"}

@@ -19,6 +19,7 @@ from harness.language.files.source import Place, Source
 from harness.language.files.yaml_file import read_text
 from harness.language.world import MeshSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.plugins.formats.moveit_scene.tokens import TokenReader
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import (
     LEAST_NORMAL,
     THICK_PLANE,
@@ -27,7 +28,7 @@ from harness.plugins.formats.plain_values import (
     pose_spec,
 )
 from harness.plugins.formats.stl import Triangles, add_mesh, cone
-from harness.world.imported import ImportedWorld, Notes
+from harness.world.imported import ImportedWorld
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 

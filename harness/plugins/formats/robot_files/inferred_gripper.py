@@ -20,7 +20,7 @@ from harness.robot.description import NamedState, PlanningGroup
 from harness.robot.mechanism import Joint, Mimic
 from harness.robot.mesh_file import hull_of, is_flat
 from harness.robot.robot_yaml import FingerSide, GripperFacts
-from harness.robot.solids import DOT, coal_geometry, hull_corners
+from harness.robot.solids import DOT, box_corners, coal_geometry
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
 
@@ -225,7 +225,7 @@ class _Hand:
         """The corners of each solid of a link [m], shape (n, 3) each."""
         pose = self.pose(link, position)
         return [
-            (pose @ shape.pose).apply(hull_corners(coal_geometry(shape)))
+            (pose @ shape.pose).apply(_hull_corners(coal_geometry(shape)))
             for shape in self._shapes[link]
         ]
 
@@ -257,7 +257,7 @@ class _Hand:
         lower = self.joint.lower
         hinge = self.pose(link, lower).inverse() @ self.pose(self.joint.child, lower)
         axis = hinge.rotation @ self.joint.axis
-        arms = np.concatenate([pose.apply(hull_corners(solid)) for solid, pose in self.pad(link)])
+        arms = np.concatenate([pose.apply(_hull_corners(solid)) for solid, pose in self.pad(link)])
         arms = arms - hinge.translation
         arms = arms - np.outer(arms @ axis, axis)
         farthest = max(arms, key=np.linalg.norm)
@@ -272,7 +272,7 @@ class _Hand:
             out: The unit vector along which distances count, link axes.
             start: The distance where the half begins; before the parts, their nearest corner [m].
         """
-        parts = [pose.apply(hull_corners(solid)) for solid, pose in self.pad(link)]
+        parts = [pose.apply(_hull_corners(solid)) for solid, pose in self.pad(link)]
         ends = np.concatenate([points @ out for points in parts])
         low, high = float(ends.min()), float(ends.max())
         middle = 0.5 * (high + (start if low < start < high else low))
@@ -296,7 +296,7 @@ class _Hand:
         jaw = next(pad for pad in pads if pad != self.palm)
         at, dot = self.pose(jaw, position), _dot()
         pairs = [
-            (_distance(solid, at @ place, *part), (at @ place).apply(hull_corners(solid)), part)
+            (_distance(solid, at @ place, *part), (at @ place).apply(_hull_corners(solid)), part)
             for solid, place in self.pad(jaw)
             for part in self.pad(self.palm)
         ]
@@ -432,3 +432,10 @@ def _state(srdf: Srdf, group: str, joint: str, word: str, default: float) -> flo
         if state.group == group and state.name.lower() in STATES[word] and joint in state.positions:
             return state.positions[joint]
     return default
+
+
+def _hull_corners(solid: Any) -> FloatArray:
+    """Corners of a convex hull; of another of Coal's geometries those of its box, (n, 3) [m]."""
+    if hasattr(solid, "points"):
+        return np.array(solid.points(), dtype=float).reshape(-1, 3)
+    return box_corners(solid)

@@ -10,10 +10,10 @@ from harness.core.errors import SpecError
 from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.sdf.joints import KINDS
 from harness.plugins.formats.sdf.scope import OWN, WORLD, Named, SdfScope
 from harness.plugins.formats.sdf.values import text_of
-from harness.world.imported import Notes
 
 
 @dataclass(frozen=True, eq=False)

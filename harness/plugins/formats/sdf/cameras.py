@@ -7,11 +7,11 @@ from typing import Any
 
 from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import pose_spec
 from harness.plugins.formats.sdf.bodies import SdfBody, SdfLink
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.values import number, numbers_of, pose_of, text_of, validated
-from harness.world.imported import Notes
 
 KINDS = ("camera", "rgbd_camera", "depth", "depth_camera", "segmentation", "segmentation_camera")
 """Types of sensors that are imported as cameras; `capture` selects the kinds of picture."""

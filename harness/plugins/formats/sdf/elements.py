@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.language.files.xml_file import XmlElement
-from harness.world.imported import Notes
+from harness.plugins.formats.notes import Notes
 
 READ = {
     kind: tuple(words.split())

@@ -10,10 +10,10 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.fixture_words import PartJoint
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.scope import SdfScope
 from harness.plugins.formats.sdf.values import bound, is_flag, number, numbers_of
-from harness.world.imported import Notes
 
 KINDS: dict[str, Literal["hinge", "slide"]] = {
     "revolute": "hinge",

@@ -11,10 +11,10 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import ShapeSpec
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.object_words import MassProperties, together
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.values import is_true, number, pose_of
-from harness.world.imported import Notes
 from harness.world.objects import primitive
 
 WATER = 1000.0  # default density of an automatic inertial in SDF 1.11 [kg/m^3]

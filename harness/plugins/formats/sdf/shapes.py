@@ -17,13 +17,13 @@ from harness.core.spatial import SE3
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import FrictionSpec, MeshSpec, ShapeSpec
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import facing, pose_spec, rounded
 from harness.plugins.formats.sdf.elements import READ, note_unread_elements
 from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath
 from harness.plugins.formats.sdf.round_meshes import cone, ellipsoid
 from harness.plugins.formats.sdf.values import number, numbers_of, positive, text_of
 from harness.robot.mesh_file import convex_hull
-from harness.world.imported import Notes
 
 PLAIN_COLORS: Mapping[str, Rgba] = {
     "Grey": (0.7, 0.7, 0.7, 1.0),

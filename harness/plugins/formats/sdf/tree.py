@@ -9,11 +9,11 @@ from harness.core.errors import SpecError, collected
 from harness.core.files import is_dir
 from harness.core.limits import SDF_MODELS
 from harness.language.files.xml_file import XmlElement, read_xml
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath, model_file
 from harness.plugins.formats.sdf.scope import WORLD, Named, SdfScope, check_frames
 from harness.plugins.formats.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
-from harness.world.imported import Notes
 
 OLDEST, NEWEST = (1, 4), (1, 11)
 OWN_AXES = (1, 5)  # the version from which an axis is in the frame of its joint

@@ -15,6 +15,7 @@ from harness.language.base import SMALLEST_SIZE
 from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.bodies import SdfBody, bodies_of
 from harness.plugins.formats.sdf.cameras import cameras_of
@@ -24,7 +25,7 @@ from harness.plugins.formats.sdf.object import LONGEST_NAME, object_of, part_of
 from harness.plugins.formats.sdf.shapes import ShapeReader
 from harness.plugins.formats.sdf.tree import SdfLight, SdfTree
 from harness.plugins.formats.sdf.values import is_flag, is_true, numbers_of, validated
-from harness.world.imported import ImportedWorld, Notes
+from harness.world.imported import ImportedWorld
 
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as in a world file
 

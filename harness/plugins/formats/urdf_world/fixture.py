@@ -13,6 +13,7 @@ from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.world import ObjectSpec, PartKey, ShapeSpec, WorldSpec
 from harness.plugins.formats.fixture_words import PartJoint, on_fixture, part_model
+from harness.plugins.formats.notes import Notes
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
@@ -21,7 +22,7 @@ from harness.robot.mechanism import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf, parse_urdf
-from harness.world.imported import ImportedWorld, Notes
+from harness.world.imported import ImportedWorld
 
 
 def load_urdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
