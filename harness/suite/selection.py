@@ -2,66 +2,48 @@
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader
 
-_TOKEN = re.compile(r"\s*(?:([()])|([^\s()]+))")
-_Part = Callable[[str], bool]
+_TOKEN = re.compile(r"[()]|[^\s()]+")
+_OPERATORS = frozenset(("(", ")", "and", "or", "not"))
 
 
 def selects(expression: str, file: Path, header: ScenarioHeader, case: str = "") -> bool:
     """Whether an expression holds for a case of a scenario.
 
     A word holds if the file's path, the title, a tag or the case's name contains it, in any case;
-    `and`, `or`, `not` and brackets as in Python.
+    `and`, `or`, `not` and brackets as in Python, which reads the expression with a truth value in
+    place of each word.
 
     Raises:
         UsageError: The expression cannot be read.
     """
     text = "\n".join([file.as_posix(), header.title, *header.tags, case]).lower()
-    parser = _Parser(expression)
+    tokens: list[str] = _TOKEN.findall(expression)
+    values = [each if each in _OPERATORS else str(each.lower() in text) for each in tokens]
     try:
-        value = parser.any_of(text)
-    except RecursionError:
+        return _holds(ast.parse(" ".join(values), mode="eval").body)
+    except SyntaxError as error:
+        raise UsageError(f"-k '{expression}' cannot be read: {error.msg}") from None
+    except (RecursionError, MemoryError):
         raise UsageError("-k: its brackets and `not` are nested too deeply") from None
-    if parser.tokens:
-        raise UsageError(f"-k '{expression}': cannot read it from '{parser.tokens[0]}' on")
-    return value
 
 
-class _Parser:
-    """Recursive descent without short-circuits, so that every mistake is found."""
-
-    def __init__(self, expression: str) -> None:
-        self.expression = expression
-        self.tokens = ["".join(pair) for pair in _TOKEN.findall(expression)]
-
-    def any_of(self, text: str) -> bool:
-        return any(self._joined("or", self._all_of, text))
-
-    def _all_of(self, text: str) -> bool:
-        return all(self._joined("and", self._one, text))
-
-    def _joined(self, word: str, part: _Part, text: str) -> Sequence[bool]:
-        values = [part(text)]
-        while self.tokens[:1] == [word]:
-            self.tokens.pop(0)
-            values.append(part(text))
-        return values
-
-    def _one(self, text: str) -> bool:
-        token = self.tokens.pop(0) if self.tokens else ""
-        if token == "not":
-            return not self._one(text)
-        if token == "(":
-            value = self.any_of(text)
-            if not self.tokens or self.tokens.pop(0) != ")":
-                raise UsageError(f"-k '{self.expression}': a bracket is not closed")
+def _holds(node: ast.AST) -> bool:
+    """The truth value of a parsed expression."""
+    match node:
+        case ast.Constant(value=bool() as value):
             return value
-        if token in {"", ")", "and", "or"}:
-            raise UsageError(f"-k '{self.expression}': a word is missing before '{token}'")
-        return token.lower() in text
+        case ast.UnaryOp(operand=operand):
+            return not _holds(operand)
+        case ast.BoolOp(op=ast.And(), values=values):
+            return all(list(map(_holds, values)))  # each part is looked at: it may be wrong
+        case ast.BoolOp(values=values):
+            return any(list(map(_holds, values)))
+        case _:
+            raise SyntaxError("two words stand next to each other")
