@@ -84,21 +84,6 @@ def read_header(
     return ScenarioHeader(title, tags, line, variation, verifies, varied)
 
 
-def stated_variation(varied: Mapping[str, Any]) -> Variation:
-    """The variation that the values of a header say.
-
-    Raises:
-        ValueError, SpecError: They have a mistake.
-    """
-    from harness.language.files.source import Place, Source, located
-    from harness.language.reading.case_keys import read_case_keys
-
-    if not varied:
-        return ONE_CASE
-    entries = located(dict(varied), Place(Source(""))).mapping()
-    return Variation.of(read_case_keys(entries, []))
-
-
 def _with_options(root: Located, overrides: Mapping[str, str]) -> Located:
     """The file's values with options in their place, where these can change the header."""
     params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}

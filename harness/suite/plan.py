@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import bisect
 import itertools
-from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
@@ -12,7 +10,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
-from harness.core.lazy import LazySequence
 from harness.core.limits import CASE_PATTERN
 from harness.core.options import values_of
 from harness.core.variation import MOST_SAMPLES
@@ -33,10 +30,6 @@ class FileCaseSequence(Protocol):
     def __getitem__(self, index: int, /) -> Case: ...
 
     def name(self, index: int) -> str: ...
-
-    def index_of(self, name: str) -> int | None:
-        """The index of the case of a name; None where there is none."""
-        ...
 
     def group(self, index: int) -> str | None:
         """The name of the parametrised case that a case is a sample of; None where it is none."""
@@ -59,7 +52,7 @@ class FileCases:
     request: SuiteRequest
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class PlannedCase:
     """A case that will be run; its values are drawn when they are read.
 
@@ -83,7 +76,7 @@ class PlannedCase:
     def name(self) -> str:
         return self.of.cases.name(self.position)
 
-    @cached_property
+    @property
     def case(self) -> Case:
         return self.of.cases[self.position]
 
@@ -104,40 +97,29 @@ class PlannedCase:
         return {path: fixed.get(path, value) for path, value in self.case.values.items()}
 
 
-class Plan(LazySequence[PlannedCase]):
-    """The cases of a suite in file order; a few bytes of memory for each."""
+class Plan(list[PlannedCase]):
+    """The cases of a suite in file order.
 
-    def __init__(self, files: Sequence[FileCases], selected: array[int] | None = None) -> None:
-        """Remember which cases are selected.
+    Attributes:
+        files: The files, each with all its cases.
+    """
 
-        Args:
-            selected: Numbers of the selected cases among all cases of all files; None: all.
-        """
+    def __init__(
+        self, files: Sequence[FileCases], cases: Iterable[PlannedCase] | None = None
+    ) -> None:
+        """Remember which cases are selected; by default all of the files."""
+        every = (PlannedCase(of, index) for of in files for index in range(len(of.cases)))
+        super().__init__(every if cases is None else cases)
         self.files = files
-        self._ends = list(itertools.accumulate(len(each.cases) for each in files))
-        self._numbers = range(self._ends[-1] if self._ends else 0) if selected is None else selected
-        super().__init__(len(self._numbers), self._planned)
 
-    def _planned(self, index: int) -> PlannedCase:
-        number = self._numbers[index]
-        place = bisect.bisect_right(self._ends, number)
-        of = self.files[place]
-        return PlannedCase(of, number - self._ends[place] + len(of.cases))
-
-    def find(self, file: str, name: str) -> int | None:
-        """The index of a case, by the file as the user named it; None where there is none."""
-        for of, end in zip(self.files, self._ends, strict=True):
-            position = of.cases.index_of(name) if str(of.file) == file else None
-            if position is not None:
-                number = end - len(of.cases) + position
-                index = bisect.bisect_left(self._numbers, number)
-                is_selected = index < len(self) and self._numbers[index] == number
-                return index if is_selected else None
-        return None
+    @cached_property
+    def index_of(self) -> Mapping[tuple[str, str], int]:
+        """The index of each case by its file, as the user named it, and its name."""
+        return {(str(each.file), each.name): index for index, each in enumerate(self)}
 
     def where(self, is_selected: Iterable[bool]) -> Plan:
         """The cases of the plan that are selected, with one truth value for each."""
-        return Plan(self.files, array("Q", itertools.compress(self._numbers, is_selected)))
+        return Plan(self.files, itertools.compress(self, is_selected))
 
 
 def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:

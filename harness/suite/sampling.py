@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Iterable
 
 from harness.core.proportion import wilson_interval
@@ -131,11 +130,10 @@ class Sampling:
         """
         self._is_part = is_part
         self._groups: dict[tuple[str, str], _Group] = {}
-        self._runs: list[tuple[int, int, _Group | None]] = []  # first index, first place, group
-        for index, each in enumerate(plan):
+        self._places: list[tuple[_Group, int] | None] = []  # None of a case that is no sample
+        for each in plan:
             group = self._group_of(each)
-            if not self._runs or self._runs[-1][2] is not group:
-                self._runs.append((index, 0 if group is None else group.planned, group))
+            self._places.append(None if group is None else (group, group.planned))
             if group is not None:
                 group.planned += 1
 
@@ -147,20 +145,15 @@ class Sampling:
             self._groups[key] = _Group(planned.header.variation, is_part=self._is_part)
         return self._groups[key]
 
-    def _place(self, index: int) -> tuple[_Group, int] | None:
-        """The group of a sample and its place there; None of a case that is no sample."""
-        first, place, group = self._runs[bisect_right(self._runs, index, key=_first) - 1]
-        return None if group is None else (group, place + index - first)
-
     def note(self, index: int, outcome: Outcome, digest: str) -> None:
         """Take in an outcome, and the digest of the run; empty where nothing ran."""
-        if found := self._place(index):
+        if found := self._places[index]:
             group, place = found
             group.note(place, outcome, digest)
 
     def is_needless(self, index: int) -> bool:
         """Whether a sample no longer counts, or would only repeat another sample's mistake."""
-        found = self._place(index)
+        found = self._places[index]
         return found is not None and found[0].is_needless(found[1])
 
     def groups(self) -> list[SampledRate]:
@@ -180,20 +173,16 @@ class Sampling:
     def outcomes(self, results: Iterable[tuple[int, Outcome]]) -> set[Outcome]:
         """Outcomes of cases that count, with groups of samples in place of failed samples."""
         outcomes: set[Outcome] = {group.outcome for group in self.groups()}
-        are_all_sampled = all(group is not None for _, _, group in self._runs)
+        are_all_sampled = all(self._places)
         for index, outcome in results:
             if outcome in outcomes or (outcome == "passed" and are_all_sampled):
                 continue
-            if outcome == "failed" and (found := self._place(index)):
+            if outcome == "failed" and (found := self._places[index]):
                 is_alone = self._is_part and not found[0].has_required_rate
                 outcomes |= {outcome} if is_alone else set()
-            elif outcome != "passed" or self._place(index) is None:
+            elif outcome != "passed" or self._places[index] is None:
                 outcomes.add(outcome)
         return outcomes
-
-
-def _first(run: tuple[int, int, _Group | None]) -> int:
-    return run[0]
 
 
 class _Group:

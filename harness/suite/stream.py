@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any, BinaryIO, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal, NamedTuple, TypeVar
 
 from harness.core.errors import HarnessError
 from harness.core.inputs import content_hash
@@ -35,8 +35,7 @@ FILE = "results.jsonl"
 L = TypeVar("L")  # a kind of line
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """Where a line stands in a file.
 
     Attributes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from array import array
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -47,7 +46,7 @@ class SuiteRun:
         self.plan = plan
         self.files = files
         self.jobs = LazySequence(len(plan) * request.repeat, self._job)
-        self.results = Results(len(self.jobs))
+        self.results = Results()
         self.resumed = 0
         self.is_interrupted = False
         self.missing_parts: tuple[str, ...] = ()
@@ -103,7 +102,7 @@ class SuiteRun:
 
     def read_from(self, stream: Stream) -> None:
         self._stream = stream
-        self.results = Results(len(self.jobs), stream)
+        self.results = Results(stream)
 
     def count(self) -> None:
         """Leave out the results of samples after an early stop, also for readers of the stream.
@@ -202,7 +201,7 @@ class SuiteRun:
     @property
     def record(self) -> SuiteRecord:
         """What the suite's files are written from."""
-        counted = array("Q", self.results)
+        counted = list(self.results)
         cases = LazySequence(len(counted), lambda index: self.case(counted[index]))
         outcome, parts = self.outcome, self.missing_parts
         return SuiteRecord(outcome, cases, self.rates, self.is_interrupted, parts, wall=self._wall)

@@ -190,7 +190,6 @@ class Cases(LazySequence[Case]):
         self._base = base
         self._samples = samples
         self._parametrized = tuple(variation.parametrized())
-        self._places = {case.name: place for place, case in enumerate(self._parametrized)}
         super().__init__(len(self._parametrized) * max(1, samples), self._case)
 
     def _case(self, index: int) -> Case:
@@ -203,17 +202,6 @@ class Cases(LazySequence[Case]):
         """The name of a case, without drawing its values."""
         case, sample = self._place(index)
         return case.name if sample is None else _sample_name(case, sample)
-
-    def index_of(self, name: str) -> int | None:
-        """The index of the case of a name; None where there is none."""
-        if not self._samples:
-            return self._places.get(name)
-        start, _, number = name.rpartition("sample")
-        place = self._places.get(start.removesuffix("-"))
-        if place is None or not number.isdecimal() or int(number) >= self._samples:
-            return None
-        index = place * self._samples + int(number)
-        return index if self.name(index) == name else None
 
     def group(self, index: int) -> str | None:
         """The name of the parametrised case that a case is a sample of; None where it is none."""

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from harness.core.errors import SpecError
 from harness.language.reading.load import load_scenario
+from harness.plugins.campaigns.shards import stated_variation
 from harness.suite.discovery import UsageError
-from harness.suite.header import read_header, stated_variation
+from harness.suite.header import read_header
 from harness.suite.plan import planned_cases
 from harness.suite.request import SuiteRequest
 

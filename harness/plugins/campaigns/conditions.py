@@ -10,7 +10,6 @@ import weakref
 from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
@@ -88,14 +87,6 @@ class FileConditions:
     def name(self, index: int) -> str:
         """The name of a case."""
         return self._names[index]
-
-    def index_of(self, name: str) -> int | None:
-        """The index of the case of a name; None where there is none."""
-        return self._indices.get(name)
-
-    @cached_property
-    def _indices(self) -> dict[str, int]:
-        return {name: index for index, name in enumerate(self._names)}
 
     def group(self, index: int) -> str:
         """The name of the parametrised case that a case is a sample of."""
@@ -217,7 +208,7 @@ def write_results(suite: SuiteRun, folder: Path, history: History) -> tuple[Path
     has_samples = any(each.rate_key is not None for each in suite.plan)
     if suite.is_part or not has_samples:
         return write_suite(folder, suite.record, suite.exit_code, history)
-    indices = array("Q", suite.results)
+    indices = list(suite.results)
     with writing(folder), replaced(folder / FILE) as file:
         conditions = ConditionWriter(file)
 

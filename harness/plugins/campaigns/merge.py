@@ -137,7 +137,7 @@ def _results_of(
     with (folder / FILE).open("rb") as file:
         for _, line in lines_of(file):
             entry = entry_of(line)
-            index = entry and suite.plan.find(entry.result.file, entry.result.case)
+            index = entry and suite.plan.index_of.get((entry.result.file, entry.result.case))
             if entry is None or index is None:
                 continue
             if entry.result.report_dir and root != folder:

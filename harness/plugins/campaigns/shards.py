@@ -18,10 +18,11 @@ from harness.core.options import values_of
 from harness.core.untrusted_json import parse_json
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
-from harness.suite.header import ScenarioHeader, read_header, stated_variation
+from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.installation import Installation, installation
 from harness.suite.plan import Plan
 from harness.suite.request import SuiteRequest, SuiteSelection
+from harness.suite.variation import ONE_CASE, Variation
 
 FORMAT = "armharness-shard/5"
 FILE = "shard.json"
@@ -243,3 +244,18 @@ def _check_same_suite(record: ShardRecord, folder: Path, other: ShardRecord, pla
         raise UsageError(
             f"'{folder}' and '{place}' both hold part {record.shard}; name one of them"
         )
+
+
+def stated_variation(varied: Mapping[str, Any]) -> Variation:
+    """The variation that the values of a header say.
+
+    Raises:
+        ValueError, SpecError: They have a mistake.
+    """
+    from harness.language.files.source import Place, Source, located
+    from harness.language.reading.case_keys import read_case_keys
+
+    if not varied:
+        return ONE_CASE
+    entries = located(dict(varied), Place(Source(""))).mapping()
+    return Variation.of(read_case_keys(entries, []))
