@@ -164,14 +164,14 @@ class Stream:
                 whole = place.offset + place.length
                 if not is_intact(line):
                     damaged.append(place)
-                elif (entry := entry_of(line)) is not None:
+                elif (entry := read_line(line, StreamEntry)) is not None:
                     self._known[entry.key] = place
-                elif (inputs := inputs_of(line)) is not None:
+                elif (inputs := read_line(line, Inputs)) is not None:
                     self._inputs[inputs.digest] = inputs
-                elif (keys := left_out_of(line)) is not None:
-                    self._leaves_out = bool(keys)
+                elif (left_out := read_line(line, LeftOut)) is not None:
+                    self._leaves_out = bool(left_out.keys)
             for place in damaged:
-                entry = entry_of(os.pread(file.fileno(), place.length, place.offset))
+                entry = read_line(os.pread(file.fileno(), place.length, place.offset), StreamEntry)
                 self._unused.update([] if entry is None else [entry.key])
                 os.pwrite(file.fileno(), b" " * (place.length - 1), place.offset)
             os.pwrite(file.fileno(), b" " * (self._end - whole), whole)
@@ -271,7 +271,8 @@ class Stream:
 
     def entry(self, place: Place) -> StreamEntry:
         """The entry that was written to a place."""
-        entry = entry_of(os.pread(self._file.fileno(), place.length, place.offset))
+        line = os.pread(self._file.fileno(), place.length, place.offset)
+        entry = read_line(line, StreamEntry)
         if entry is None:
             raise HarnessError(f"'{self.path}' was changed while it was in use")
         return entry
@@ -306,23 +307,8 @@ def _checksum(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:CHECK_DIGITS]
 
 
-def inputs_of(line: bytes) -> Inputs | None:
-    """The files that a line of a stream lists; None where it is another line."""
-    return _read(Inputs, line)
-
-
-def left_out_of(line: bytes) -> Sequence[str] | None:
-    """The results that a line of a stream leaves out; None where it is another line."""
-    found = _read(LeftOut, line)
-    return None if found is None else found.keys
-
-
-def entry_of(line: bytes) -> StreamEntry | None:
-    """A result of a stream; None where the line was cut off, or is another one."""
-    return _read(StreamEntry, line)
-
-
-def _read(kind: type[L], line: bytes) -> L | None:
+def read_line(line: bytes, kind: type[L]) -> L | None:
+    """A line of a stream; None where it was cut off, or is of another kind."""
     try:
         return validator(kind).validate_json(line)
     except ValueError:

@@ -20,7 +20,7 @@ from harness.suite.header import read_header
 from harness.suite.hooks import SuiteHooks
 from harness.suite.plan import cases_of, planned_cases
 from harness.suite.request import SuiteRequest
-from harness.suite.stream import Stream, StreamEntry, entry_of
+from harness.suite.stream import Stream, StreamEntry, read_line
 from harness.suite.suite_run import SuiteRun
 from harness.suite.warm import WarmServer
 from tests.benchmarks.test_suites import picks
@@ -49,7 +49,7 @@ def parts_of(folder, count, parts=PARTS):
     command(folder, "run", "ball.scenario.yaml", "--shard", "1/1", "--report-dir", "one")
     lines = (folder / "one/results.jsonl").read_bytes().splitlines(keepends=True)
     line = next(each for each in lines if b'"result"' in each)
-    entry = entry_of(line)
+    entry = read_line(line, StreamEntry)
     record = json.loads((folder / "one/shard.json").read_text())
     streams = []
     for number in range(1, parts + 1):

@@ -22,11 +22,11 @@ from harness.suite.stream import (
     FILE,
     Inputs,
     Stream,
+    StreamEntry,
     checked_line,
-    entry_of,
-    inputs_of,
     is_intact,
     lines_of,
+    read_line,
 )
 from harness.suite.suite_run import SuiteRun
 
@@ -105,9 +105,9 @@ def _checked_inputs(paths: Sequence[Path]) -> list[Inputs]:
                         f"line {number} of '{path}' is not as it was written: its checksum does"
                         " not match; run this part again with --resume"
                     )
-                if (entry := entry_of(line)) is not None:
+                if (entry := read_line(line, StreamEntry)) is not None:
                     used[entry.key] = entry.inputs
-                elif (inputs := inputs_of(line)) is not None:
+                elif (inputs := read_line(line, Inputs)) is not None:
                     listed[inputs.digest] = inputs
         for inputs in (listed[each] for each in dict.fromkeys(used.values()) if each in listed):
             found[inputs.digest] = inputs
@@ -136,7 +136,7 @@ def _results_of(
         return
     with (folder / FILE).open("rb") as file:
         for _, line in lines_of(file):
-            entry = entry_of(line)
+            entry = read_line(line, StreamEntry)
             index = entry and suite.plan.index_of.get((entry.result.file, entry.result.case))
             if entry is None or index is None:
                 continue

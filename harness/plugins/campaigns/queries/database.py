@@ -14,7 +14,7 @@ from harness.core.quantity import split_quantity
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.suite.cause import cause_of
 from harness.suite.discovery import UsageError
-from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of, lines_of
+from harness.suite.stream import FILE, LeftOut, StreamEntry, lines_of, read_line
 
 DATABASE = "results.sqlite"
 VERSION = 4  # of the tables; a database of another one is made again
@@ -94,12 +94,12 @@ def _update(connection: sqlite3.Connection, journal: Path) -> None:
         batch: list[StreamEntry] = []
         for place, line in lines_of(file):
             start = place.offset + place.length
-            entry = entry_of(line)
+            entry = read_line(line, StreamEntry)
             if entry is not None:
                 batch.append(entry)
-            elif (keys := left_out_of(line)) is not None:
+            elif (left_out := read_line(line, LeftOut)) is not None:
                 connection.execute("DELETE FROM left_out")
-                rows = ((key,) for key in keys)
+                rows = ((key,) for key in left_out.keys)
                 connection.executemany("INSERT OR IGNORE INTO left_out VALUES (?)", rows)
             if len(batch) == BATCH:
                 count = _insert(connection, batch, count)
