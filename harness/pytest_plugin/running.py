@@ -32,14 +32,12 @@ from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import ScenarioHeader, source_lines
-from harness.suite.leftovers import clean_report_folder
 from harness.suite.plan import PlannedCase, planned_cases
 from harness.suite.request import SuiteRequest
 from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError
 
 LISTED_SAMPLES = 3  # in full in pytest's output; the rest is counted
-CLEANED = pytest.StashKey[bool]()
 
 
 class ScenarioNotPassed(Exception):
@@ -79,9 +77,6 @@ def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) 
         RateNotShown: The samples do not show the required success rate.
     """
     root = report_root(item.config)
-    if root is not None and not item.config.stash.get(CLEANED, False):
-        item.config.stash[CLEANED] = True
-        clean_report_folder(root)
     request = SuiteRequest(
         report_root=root,
         strict=bool(item.config.getoption("--harness-strict")),

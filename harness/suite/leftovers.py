@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import os
 import re
 import shutil
@@ -17,42 +18,11 @@ def clean_leftovers(folder: Path) -> None:
     `recording.write_run` writes under `.NAME.writing.PID.N` and keeps the older report in
     `.NAME.old.PID.N` while it swaps the two; an older report that lost its place is put back.
     """
-    _clean(folder.parent, only=folder.name)
-
-
-def clean_report_folder(root: Path) -> None:
-    """Remove them everywhere below the folder that reports are written to.
-
-    Folders with files are reports, or somebody else's, and are not entered.
-    """
-    waiting = [root]
-    while waiting:
-        folder = waiting.pop()
-        try:
-            with os.scandir(folder) as entries:
-                found = list(entries)
-        except OSError:
-            continue
-        if folder != root and any(not each.is_dir(follow_symlinks=False) for each in found):
-            continue
-        _clean(folder)
-        waiting += [
-            Path(each.path)
-            for each in found
-            if each.is_dir(follow_symlinks=False) and not each.name.startswith(".")
-        ]
-
-
-def _clean(parent: Path, only: str | None = None) -> None:
-    try:
-        siblings = sorted(parent.iterdir())
-    except OSError:
-        return
-    for sibling in siblings:
+    for sibling in sorted(folder.parent.glob(f".{glob.escape(folder.name)}.*")):
         match = _TEMPORARY.fullmatch(sibling.name)
-        if match is None or only not in (None, match["name"]) or is_alive(int(match["pid"])):
+        if match is None or match["name"] != folder.name or is_alive(int(match["pid"])):
             continue
-        older, folder = sibling / match["name"], parent / match["name"]
+        older = sibling / folder.name
         if match["kind"] == "old" and older.is_dir() and not folder.exists():
             older.rename(folder)
         shutil.rmtree(sibling, ignore_errors=True)

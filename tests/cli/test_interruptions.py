@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.suite.leftovers import clean_report_folder
+from harness.suite.leftovers import clean_leftovers
 from tests.cli.run_in_terminal import HARNESS, run_in_terminal
 from tests.gate import PLUGIN, Gate
 from tests.waiting import HANG, is_alive, wait_for
@@ -242,29 +242,21 @@ def dead_process():
     return process.pid
 
 
-@pytest.mark.nightly
-def test_every_run_cleans_the_whole_report_folder(folder):
+def test_a_run_cleans_what_killed_runs_of_its_case_left(folder):
     reports = folder / "reports"
     dead = dead_process()
-    gone = [leftover(reports, "short", dead), leftover(reports, "other", dead),
-            leftover(reports / "deep" / "er", "third", dead)]  # fmt: skip
-    alive = leftover(reports / "deep", "busy", os.getpid())
-    older = reports / f".lost.old.{dead}.1" / "lost"
+    gone = leftover(reports, "short", dead)
+    alive = leftover(reports, "short", os.getpid())
+    kept = leftover(reports, "other", dead)
+    older = reports / f".short.old.{dead}.1" / "short"
     older.mkdir(parents=True)
     (older / "run.json").write_text("{}")
-    foreign = reports / "mine"
-    foreign.mkdir()
-    (foreign / "notes.txt").write_text("mine")
-    kept = leftover(foreign, "x", dead)
-    subprocess.run(
-        [*HARNESS, "run", "short.scenario.yaml", "--no-page", "--in-process"],
-        cwd=folder, capture_output=True, check=False,
-    )  # fmt: skip
-    assert not [place for place in gone if place.exists()]
+    clean_leftovers(reports / "short")
+    assert not gone.exists()
+    assert not older.parent.exists()
     assert alive.exists()
-    assert (reports / "lost" / "run.json").is_file(), "the older report has its place again"
-    assert kept.exists(), "a folder with files of somebody else is not entered"
-    assert (reports / "short" / "run.json").is_file()
+    assert kept.exists(), "it is cleaned when its own case is run"
+    assert (reports / "short" / "run.json").is_file(), "the older report has its place again"
 
 
 @pytest.mark.nightly
@@ -280,7 +272,7 @@ def test_a_killed_run_leaves_nothing_after_the_next_one(folder):
     writer = int(found.name.split(".")[3])
     wait_for(lambda: not is_alive(writer))
     assert found.exists()
-    clean_report_folder(folder / "reports")
+    clean_leftovers(folder / "reports" / "short")
     assert not found.exists()
 
 
@@ -288,5 +280,5 @@ def test_a_process_that_has_ended_writes_no_longer(folder):
     with subprocess.Popen(["true"]) as zombie:
         os.waitid(os.P_PID, zombie.pid, os.WEXITED | os.WNOWAIT)
         gone = leftover(folder / "reports", "short", zombie.pid)
-        clean_report_folder(folder / "reports")
+        clean_leftovers(folder / "reports" / "short")
         assert not gone.exists()

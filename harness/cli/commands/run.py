@@ -37,7 +37,6 @@ from harness.core.lazy import LazySequence
 from harness.core.registry import registry
 from harness.suite.case_runner import case_runner
 from harness.suite.discovery import UsageError, discover
-from harness.suite.leftovers import clean_report_folder
 from harness.suite.request import SuiteRequest
 
 if TYPE_CHECKING:
@@ -142,8 +141,6 @@ def _suite(call: RunCall) -> SuiteRun:
         check_reporters([*arguments.reporters, *["rosbag"] * arguments.bag], root)
     except HarnessError as error:
         raise UsageError(f"--reporter: {error}") from error
-    if root is not None:
-        clean_report_folder(root)
     request = read_options(
         arguments,
         SuiteRequest,
