@@ -8,11 +8,13 @@ a run, one too few keeps a wrong result.
 from __future__ import annotations
 
 import hashlib
+import stat
 import sys
 from collections.abc import Callable, Mapping
 from glob import glob
 from pathlib import Path
 
+from harness.core.errors import Problem, SpecError
 from harness.core.files import is_dir, path_exists, read_at_most
 
 INSTALLED = ("site-packages", "dist-packages")  # installed packages: their versions count
@@ -38,6 +40,33 @@ def read_input(path: Path) -> bytes:
         raise
     _read[key] = hashlib.sha256(content).hexdigest()
     return content
+
+
+def read_bounded(path: Path, kind: str, largest: int) -> bytes:
+    """The bytes of a file, which is noted as an input.
+
+    Args:
+        kind: What it should be, for messages.
+        largest: The largest size [bytes].
+
+    Raises:
+        SpecError: Not there, not a regular file, or too large.
+    """
+    name = str(path)
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            found = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
+            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is expected")])
+        if status.st_size > largest:
+            size = f"{status.st_size / 1e6:.1f} MB; at most {largest / 1e6:.0f} MB are read"
+            raise SpecError([Problem(name, 0, 0, f"the file has {size}")])
+        return read_input(path)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        missing = isinstance(error, FileNotFoundError)
+        message = "there is no such file" if missing else f"cannot be read: {reason}"
+        raise SpecError([Problem(name, 0, 0, message)]) from error
 
 
 def note_inputs(listener: Callable[[str], object]) -> None:

@@ -218,4 +218,4 @@ def test_a_file_of_a_hundred_megabytes_is_refused_in_little_memory(tmp_path):
         capture_output=True, text=True, timeout=HANG, preexec_fn=in_little_memory, check=False,
     )  # fmt: skip
     assert done.returncode == 2, done.stderr
-    assert "is too large: 10" in done.stdout
+    assert "the file has 10" in done.stdout

@@ -10,7 +10,7 @@ from typing import NoReturn
 from xml.parsers import expat
 
 from harness.core.errors import Problem, SpecError
-from harness.core.inputs import read_input
+from harness.core.inputs import read_bounded
 from harness.core.limits import LONGEST_NAME, XML_ATTRIBUTES, XML_ELEMENTS, XML_FILE, XML_LEVELS
 from harness.language.files.source import Place, Source
 
@@ -93,27 +93,7 @@ def read_xml(path: Path) -> XmlElement:
         SpecError: It cannot be read, is too large, is not well-formed, or declares a document
             type; with line and column.
     """
-    return parse_xml(read_bounded(path), str(path))
-
-
-def read_bounded(path: Path) -> bytes:
-    """A file's bytes.
-
-    Raises:
-        SpecError: It cannot be read, or has more than XML_FILE bytes.
-    """
-    name = str(path)
-    try:
-        if not path.is_file():
-            reason = "is no file" if path.exists() else "does not exist"
-            raise SpecError([Problem(name, 0, 0, reason)])
-        size = path.stat().st_size
-        if size <= XML_FILE:
-            return read_input(path)
-    except OSError as error:
-        raise SpecError([Problem(name, 0, 0, f"cannot be read: {error.strerror}")]) from error
-    message = f"is too large: {size / 1e6:.0f} MB, and at most {XML_FILE / 1e6:.0f} are read"
-    raise SpecError([Problem(name, 1, 1, message)])
+    return parse_xml(read_bounded(path, "XML file", XML_FILE), str(path))
 
 
 def parse_xml(content: str | bytes, named: str) -> XmlElement:

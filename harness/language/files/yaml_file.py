@@ -8,7 +8,6 @@ level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (
 from __future__ import annotations
 
 import re
-import stat
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
@@ -16,7 +15,7 @@ from typing import Any, ClassVar
 import yaml
 
 from harness.core.errors import Problem, SpecError
-from harness.core.inputs import read_input
+from harness.core.inputs import read_bounded
 from harness.core.limits import YAML_FILE, YAML_LEVELS, YAML_VALUES
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
 from harness.language.files.yaml_scalars import scalar_of
@@ -35,26 +34,12 @@ def read_text(path: Path, *, kind: str = "YAML file", largest: int = YAML_FILE) 
     Raises:
         SpecError: Not there, not a regular file, too large, or not UTF-8.
     """
-    name = str(path)
-    try:
-        mode = path.stat()
-        if not stat.S_ISREG(mode.st_mode):
-            found = "a folder" if stat.S_ISDIR(mode.st_mode) else "not a regular file"
-            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is expected")])
-        if mode.st_size > largest:
-            size = f"{mode.st_size / 1e6:.1f} MB; at most {largest / 1e6:.0f} MB are read"
-            raise SpecError([Problem(name, 0, 0, f"the file has {size}")])
-        data = read_input(path)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        missing = isinstance(error, FileNotFoundError)
-        message = "there is no such file" if missing else f"cannot be read: {reason}"
-        raise SpecError([Problem(name, 0, 0, message)]) from error
+    data = read_bounded(path, kind, largest)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8-sig", errors="replace")
-        source = Source.of_text(name, data.decode("utf-8-sig", errors="replace"))
+        source = Source.of_text(str(path), data.decode("utf-8-sig", errors="replace"))
         hint = "save the file as UTF-8"
         raise SpecError([source.end_of(before).problem("not UTF-8 text", hint)]) from error
 

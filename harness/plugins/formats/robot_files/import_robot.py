@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from harness.core.geometry import CollisionMode
-from harness.language.files.xml_file import read_bounded
+from harness.core.inputs import read_bounded
+from harness.core.limits import XML_FILE
 from harness.language.scenario import RobotSpec
 from harness.plugins.formats.keys.moveit import MoveItFiles
 from harness.plugins.formats.robot_files.checked_srdf import checked_srdf
@@ -57,14 +58,14 @@ def read_robot(
         found = read_sdf_robot(path, packages, given)
     else:
         is_xacro = key == "xacro"
-        document = render(path, spec.args, packages) if is_xacro else read_bounded(path)
+        document = render(path, spec.args, packages) if is_xacro else _content(path)
         found = FormatRobot(parse_urdf(document, path.parent, str(path), packages), (), {})
     urdf, states = _without_world(found.urdf), found.states
     urdf = replace(urdf, links=with_collision_modes(urdf.links, spec.collision, collision))
     srdf = None
     if srdf_path is not None:
         around = PackagePath.of_file(srdf_path, (*given, packages.home))
-        parsed = read_srdf(srdf_path, read_bounded(srdf_path), spec.args, around)
+        parsed = read_srdf(srdf_path, _content(srdf_path), spec.args, around)
         srdf = _srdf(parsed, urdf, states, str(srdf_path))
     refuse_unknown_links(spec, urdf)
     _check_limits(spec, urdf, base_dir)
@@ -122,3 +123,7 @@ def _without_world(urdf: Urdf) -> Urdf:
     elements = {**urdf.elements, ("link", RENAMED_ROOT): urdf.elements["link", WORLD]}
     note = f"the link '{WORLD}' is called '{RENAMED_ROOT}' here: '{WORLD}' is the world's own frame"
     return replace(urdf, links=links, joints=joints, elements=elements, notes=(*urdf.notes, note))
+
+
+def _content(path: Path) -> bytes:
+    return read_bounded(path, "robot description", XML_FILE)

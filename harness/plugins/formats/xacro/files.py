@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.files import is_file
-from harness.core.inputs import is_there
-from harness.core.limits import XACRO_FILES
+from harness.core.inputs import is_there, read_bounded
+from harness.core.limits import XACRO_FILES, XML_FILE
 from harness.language.files.source import Located, Source
-from harness.language.files.xml_file import XmlElement, read_bounded
+from harness.language.files.xml_file import XmlElement
 from harness.language.files.yaml_file import read_text
 from harness.plugins.formats.xacro.mixed_xml import MixedReader
 from harness.plugins.formats.xacro.ros_yaml import parse_ros_yaml
@@ -97,7 +97,7 @@ class Files:
             raise ExpressionError(f"files include each other in a circle: {names}")
         if len(above) > DEEPEST_INCLUDE:
             raise ExpressionError(f"files include each other more than {DEEPEST_INCLUDE} deep")
-        content = read_bounded(path)
+        content = read_bounded(path, "xacro file", XML_FILE)
         self._bytes += len(content)
         if self._bytes > XACRO_FILES:
             raise ExpressionError(f"more than {XACRO_FILES / 1e6:.0f} MB are included")
