@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from abc import ABC, abstractmethod
+from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.files import run_folder
@@ -61,4 +62,21 @@ class Command(Plugin, ABC):
 
         Raises:
             HarnessError: What the user gave cannot be used; its text is printed, exit code 2.
+        """
+
+
+class Starter(Plugin, ABC):
+    """Writes a folder from which another system runs this program."""
+
+    plugin_kind: ClassVar[str] = "starter"
+
+    @abstractmethod
+    def write(self, folder: Path) -> list[str]:
+        """Write the folder.
+
+        Returns:
+            Lines to print: what was written, and what to do with it.
+
+        Raises:
+            UsageError: The folder exists, or cannot be written.
         """

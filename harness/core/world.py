@@ -8,7 +8,6 @@ from typing import Literal
 import numpy as np
 
 from harness.core.geometry import Friction, Shape
-from harness.core.hole import Hole
 from harness.core.pose_arrays import IDENTITY, compose, relative, rotate, rotation_angle
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
@@ -101,6 +100,23 @@ class ObjectJoint:
         stray = relative(self._moved(positions), moved)
         off = np.linalg.norm(stray[:, :3], axis=1) > STRAY[0]
         return np.where(off | (rotation_angle(stray[:, 3:]) > STRAY[1]), np.nan, positions)
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A straight hole; its frame has its origin in the middle of the opening and z out of it.
+
+    Attributes:
+        pose: T_object_hole (xyz, quat wxyz).
+        size: Full width along x and y [m]; of a round hole its diameter, twice.
+        depth: How deep it is [m].
+        is_round: Whether it is round.
+    """
+
+    pose: tuple[float, ...]
+    size: tuple[float, float]
+    depth: float
+    is_round: bool
 
 
 @dataclass(frozen=True, eq=False)

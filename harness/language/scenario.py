@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
@@ -27,7 +27,9 @@ from harness.language.poses import Pose
 from harness.language.step import AnyStep
 from harness.language.variation import CaseKeys
 from harness.language.world import ObjectSpec
-from harness.language.wrench_sensors import WrenchSensorKey
+
+if TYPE_CHECKING:
+    from harness.core.wrench_sensor import WrenchSensor
 
 
 class StartState(SpecModel):
@@ -61,6 +63,14 @@ class JointLimits(SpecModel):
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
         default=None, description="The largest effort of the joint's motor."
     )
+
+
+class WrenchSensorKey(KeyModel):
+    """A sensor of force and torque between a link and the link before it."""
+
+    def sensor(self, name: str) -> WrenchSensor:
+        """The sensor under a name."""
+        raise NotImplementedError
 
 
 IkSolverName = Annotated[Name, PluginName("ik_solver", also=("auto",))]
@@ -209,7 +219,7 @@ class ScenarioContent(SpecModel):
 
     @classmethod
     def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
-        return ObjectSpec.not_yet.get(key) or ObjectSpec.unknown_key_hint(key, content)
+        return ObjectSpec.unknown_key_hint(key, content)
 
     scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(
         description="The title of the scenario."

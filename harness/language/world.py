@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -31,9 +31,8 @@ from harness.language.poses import Pose
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from harness.core.hole import Hole
     from harness.core.spatial import SE3
-    from harness.core.world import WorldObject
+    from harness.core.world import Hole, WorldObject
 
 COLOR = "Red, green, blue, opacity from 0 to 1; or a name as in CSS: `red`."
 
@@ -168,6 +167,8 @@ def surface_motion(velocity: SurfaceVelocity | None, rotation: float | None) -> 
 class ShapeSpec(SpecModel):
     """A shape: exactly one geometry, placed on its object."""
 
+    one_of = GEOMETRIES
+
     name: Name | None = Field(default=None, description="A name of the shape for people.")
     pose: Pose = Field(
         default=Pose(), description="The pose of the shape on the object; its frame is ignored."
@@ -183,14 +184,6 @@ class ShapeSpec(SpecModel):
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
     marker: Annotated[ShapeKey, PluginModel("marker")] | None = None
-
-    @model_validator(mode="after")
-    def _one_geometry(self) -> ShapeSpec:
-        given = [kind for kind in GEOMETRIES if getattr(self, kind) is not None]
-        if len(given) != 1:
-            found = " and ".join(given) or "none"
-            raise ValueError(f"a shape is exactly one of {', '.join(GEOMETRIES)}; found {found}")
-        return self
 
 
 class InertiaSpec(SpecModel):
@@ -221,14 +214,6 @@ class ObjectSpec(SpecModel):
 
     One with `visuals` alone is seen and touches nothing; one with `joints` alone carries its parts.
     """
-
-    not_yet: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("suction", "vacuum", "magnet"),
-            "suction cups are a gripper: `robot: {model: ur5e, gripper: suction_cup}`; any smooth"
-            " face of an object has room for them",
-        ),
-    }
 
     name: Name = Field(
         description="The name of the object, unique in the scene; not `robot`, `gripper`, `any`,"
@@ -303,6 +288,11 @@ class ObjectSpec(SpecModel):
     @classmethod
     def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
         """The key of the shape that a message of MoveIt has in `type` and `dimensions`."""
+        if key in ("suction", "vacuum", "magnet"):
+            return (
+                "suction cups are a gripper: `robot: {model: ur5e, gripper: suction_cup}`; any"
+                " smooth face of an object has room for them"
+            )
         if key in ("conveyor", "belt", "turntable"):
             return (
                 "a belt is an object with `static: true` and `surface_velocity: 0.1`, a turntable"

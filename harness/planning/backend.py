@@ -5,7 +5,7 @@ from __future__ import annotations
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.motion_planner import VerifiedPlanner
-from harness.ports.planning import PlanningPorts
+from harness.ports.motion_planning import PlanningPorts
 from harness.robot.description import RobotDescription
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.goals import AnyGoal, Goal
+from harness.ports.kinematics import Kinematics
 from harness.ports.motions import PILZ_LIMITS, CartesianLimits, PlannedMotion
+from harness.ports.scene import PlanningScene
 
 DEFAULT_PIPELINE = "ompl"
 
@@ -117,3 +119,11 @@ class MotionPlanner(Protocol):
             PlanningFailed: NO_IK_SOLUTION, GOAL_IN_COLLISION ...
         """
         ...
+
+
+class PlanningPorts(NamedTuple):
+    """A planning scene, and the kinematics and the motion planner that work with it."""
+
+    scene: PlanningScene
+    kinematics: Kinematics
+    planner: MotionPlanner

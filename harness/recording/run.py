@@ -10,10 +10,9 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.geometry import Shape
-from harness.core.hole import Hole
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
-from harness.core.world import ObjectJoint, WorldObject
+from harness.core.world import Hole, ObjectJoint, WorldObject
 from harness.recording.commands import CommandRecord
 from harness.recording.signals import CaptureRecord, ContactRecord, Signals
 from harness.recording.step_record import StepRecord

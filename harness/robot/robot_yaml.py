@@ -16,8 +16,7 @@ from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.plugin_field import PluginModel
-from harness.language.scenario import IkSolverName, JointLimits, StartState
-from harness.language.wrench_sensors import WrenchSensorKey
+from harness.language.scenario import IkSolverName, JointLimits, StartState, WrenchSensorKey
 
 FILE = "robot.yaml"
 
@@ -233,6 +232,8 @@ class RobotYaml(SpecModel):
     `mount`. Both may have a `gripper` section.
     """
 
+    one_of = ("urdf", "xacro")
+
     robot: Name = Field(description="The name of the robot in lists and messages.")
     kind: Literal["arm", "gripper"] = Field(
         description="Whether the folder holds an arm or a gripper."
@@ -315,8 +316,6 @@ class RobotYaml(SpecModel):
 
     @model_validator(mode="after")
     def _whole(self) -> RobotYaml:
-        if (self.urdf is None) == (self.xacro is None):
-            raise ValueError("exactly one of `urdf` and `xacro`")
         if self.kind == "arm" and not (self.arm_group and self.tcp_link):
             raise ValueError("an arm has an `arm_group` and a `tcp_link`")
         if self.kind == "gripper" and not (self.gripper and self.mount):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from harness.core.errors import RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.core.wrench_sensor import WrenchSensor
-from harness.language.wrench_sensors import WrenchSensorKey
+from harness.language.scenario import WrenchSensorKey
 from harness.robot.description import RobotDescription
 from harness.robot.mechanism import WORLD, Joint, Link
 from harness.robot.tree import carried_by

@@ -14,7 +14,7 @@ from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.core.registry import registry
 from harness.ports.external import ExternalSession
-from harness.ports.planning import PlanningPorts
+from harness.ports.motion_planning import PlanningPorts
 from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.explanation import Explanation

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from harness.cell.program import Program, ProgramStep
 from harness.core.spatial import SE3
-from harness.ports.planning import PlanningPorts
+from harness.ports.motion_planning import PlanningPorts
 from harness.ports.scene import PlanningScene, Touch
 from harness.recording.step_record import StepRecord
 from harness.session.dry_run import DryPlanner, DrySimulator

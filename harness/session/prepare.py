@@ -24,7 +24,7 @@ from harness.language.reading.load import (
 from harness.language.reading.partial import STAND_IN_ROBOT, Prerequisite
 from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
-from harness.ports.planning import PlanningPorts
+from harness.ports.motion_planning import PlanningPorts
 from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription

@@ -22,12 +22,11 @@ from harness.core.geometry import (
     Shape,
     Sphere,
 )
-from harness.core.hole import Hole
 from harness.core.slow_work import reported
 from harness.core.solids import is_inertia_of_a_body, point_inertia
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.core.world import Light, World, WorldObject
+from harness.core.world import Hole, Light, World, WorldObject
 from harness.language.world import (
     GEOMETRIES,
     FrictionSpec,

@@ -18,7 +18,7 @@ from harness.core.world import WorldObject
 from harness.planning.backend import make_planning
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.ports.planning import PlanningPorts
+from harness.ports.motion_planning import PlanningPorts
 from harness.recording.explanation import Explanation
 from harness.robot.random_positions import sample_robot_positions
 from harness.session.dry_run import DrySimulator

@@ -16,7 +16,6 @@ from harness.robot.description import (
 )
 from harness.robot.end_effector import Gripper
 from harness.robot.mechanism import WORLD, Joint, Link
-from harness.robot.srdf.all_arms import with_group_of_all
 from harness.robot.srdf.srdf import Srdf, SrdfGroup, link_pair, parse_srdf, write_srdf
 from harness.robot.tree import in_tree_order
 
@@ -198,7 +197,7 @@ def _joined_srdf(parts: list[Srdf], arms: list[str], source: str) -> Srdf:
         disabled={pair: why for part in parts for pair, why in part.disabled.items()},
         virtual_joints=tuple(joint for part in parts for joint in part.virtual_joints),
     )
-    return with_group_of_all(whole, arms)
+    return whole.with_group_of_all(arms)
 
 
 def _widest(tolerances: list[TrackingTolerances]) -> TrackingTolerances:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from harness.language.files.xml_file import XmlElement, parse_xml
-from harness.robot.description import NamedState
-from harness.robot.urdf.values import bounded_number
+from harness.robot.description import ALL_ARMS, NamedState
+from harness.robot.urdf.values import bounded_value
 
 READ = frozenset(
     {"group", "group_state", "end_effector", "passive_joint", "virtual_joint", "disable_collisions"}
@@ -74,6 +74,19 @@ class Srdf:
         """Whether a scenario's `gripper` is a group or an end effector of the robot itself."""
         return name in {each.name for each in (*self.groups, *self.end_effectors)}
 
+    def with_group_of_all(self, arms: Sequence[str]) -> Srdf:
+        """The SRDF with a group of all arms, and the states that each of them has."""
+        if ALL_ARMS in {group.name for group in self.groups}:
+            return self
+        states = {(state.group, state.name): state.positions for state in self.states}
+        shared = tuple(
+            NamedState(name, ALL_ARMS, {k: v for arm in arms for k, v in states[arm, name].items()})
+            for group, name in states
+            if group == arms[0] and all((arm, name) in states for arm in arms)
+        )
+        group = SrdfGroup(ALL_ARMS, subgroups=tuple(arms))
+        return replace(self, groups=(*self.groups, group), states=(*self.states, *shared))
+
 
 def link_pair(first: str, second: str) -> tuple[str, str]:
     """The unordered pair, sorted."""
@@ -111,7 +124,7 @@ def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
                 item.name(),
                 item.get("group"),
                 {
-                    joint.need("name"): bounded_number(joint, "value")
+                    joint.need("name"): bounded_value(joint)
                     for joint in item.findall("joint")
                     if not has_several_values(joint)
                 },

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from harness.core.errors import collected
 from harness.core.geometry import Mesh
+from harness.language.base import LARGEST_NUMBER
 from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.mechanism import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
-from harness.robot.urdf.gazebo import COEFFICIENTS, link_frictions
 from harness.robot.urdf.joints import (
     held_without_range,
     placeholder_limits,
@@ -26,6 +27,7 @@ from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
 from harness.robot.xacro_file import xacro_parts
 
+COEFFICIENTS = ("mu1", "mu2")  # Sliding friction along the two directions of a surface
 MOST_LINKS = 500  # pairs of links grow with its square
 OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
 READ = {
@@ -156,6 +158,33 @@ def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:
                 item.refuse(f"{item.tag} '{key[1]}' is there twice, first in line {line}")
             elements[key] = item
     return elements
+
+
+def link_frictions(root: XmlElement) -> dict[str, float]:
+    """The sliding friction coefficient by link: the smaller of its two directions.
+
+    A value that is no number is left out, as these elements are for another program.
+    """
+    found: dict[str, float] = {}
+    for item in root.findall("gazebo"):
+        values = [
+            value
+            for tag in COEFFICIENTS
+            for child in item.findall(tag)
+            if (value := _coefficient(child.get("value") or child.text)) is not None
+        ]
+        if values and item.get("reference"):
+            found[item.get("reference")] = min(values)
+    return found
+
+
+def _coefficient(text: str) -> float | None:
+    """A coefficient of friction; None for a text that is none."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return min(value, LARGEST_NUMBER) if value >= 0 and not math.isnan(value) else None
 
 
 def _ignored(root: XmlElement) -> list[str]:

@@ -23,10 +23,10 @@ def number(element: XmlElement, name: str, default: float | None = None) -> floa
     return values[0]
 
 
-def bounded_number(element: XmlElement, name: str) -> float:
-    """A number in a required attribute, as large as a scenario may have one."""
-    value = number(element, name)
-    _refuse_beyond(element, name, value)
+def bounded_value(element: XmlElement) -> float:
+    """The number in the attribute `value`, as large as a scenario may have one."""
+    value = number(element, "value")
+    _refuse_beyond(element, "value", value)
     return value
 
 

@@ -57,15 +57,10 @@ def _write_inertial(parent: ET.Element, inertial: Inertial) -> None:
     element = ET.SubElement(parent, "inertial")
     ET.SubElement(element, "origin", xyz=_text(inertial.center_of_mass))
     ET.SubElement(element, "mass", value=repr(float(inertial.mass)))
-    entries = {
-        "ixx": (0, 0),
-        "ixy": (0, 1),
-        "ixz": (0, 2),
-        "iyy": (1, 1),
-        "iyz": (1, 2),
-        "izz": (2, 2),
-    }
-    tensor = {key: repr(float(inertial.inertia[place])) for key, place in entries.items()}
+    numbers = map(repr, inertial.inertia[np.triu_indices(3)].tolist())
+    tensor: dict[str, str] = dict(
+        zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), numbers, strict=True)
+    )
     ET.SubElement(element, "inertia", tensor)
 
 

@@ -17,9 +17,8 @@ from harness.planning.backend import make_planning
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import OrientationBand, PathConstraints, PoseGoal
-from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motion_planning import MotionRequest, PlanningOptions, PlanningPorts
 from harness.ports.motions import FreeMotion
-from harness.ports.planning import PlanningPorts
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from tests.benchmarks.planning.arms import fr3_files

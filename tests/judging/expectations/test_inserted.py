@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from harness.core.geometry import Box, Cylinder
-from harness.core.hole import Hole
+from harness.core.world import Hole
 from harness.plugins.contact.expectations.inserted import Inserted
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three

@@ -11,9 +11,9 @@ from pydantic import Field
 from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Sphere
-from harness.core.hole import Hole
 from harness.core.pose_arrays import compose, conjugate, rotate
 from harness.core.types import FloatArray
+from harness.core.world import Hole
 from harness.judging.expectation import Predicate
 from harness.judging.limits import refuse_decided
 from harness.judging.margins import MarginSignal, Part, all_of

@@ -9,8 +9,8 @@ from typing import Annotated, ClassVar
 from pydantic import Field, model_validator
 
 from harness.core.geometry import Box, Shape
-from harness.core.hole import Hole
 from harness.core.spatial import SE3
+from harness.core.world import Hole
 from harness.language.base import Count, Length, PositiveLength
 from harness.language.world import HoleKey
 

@@ -9,7 +9,7 @@ from pydantic import Field
 from harness.core.spatial import SE3
 from harness.core.wrench_sensor import WrenchSensor
 from harness.language.base import Force, Name, Rate, Rpy, Torque, Xyz
-from harness.language.wrench_sensors import WrenchSensorKey
+from harness.language.scenario import WrenchSensorKey
 
 
 class WrenchSensorSpec(WrenchSensorKey):

@@ -29,7 +29,6 @@ from harness.robot.description import PlanningGroup
 from harness.robot.groups import planning_groups
 from harness.robot.mechanism import Joint
 from harness.robot.robot_yaml import RobotYaml
-from harness.robot.srdf.all_arms import with_group_of_all
 from harness.robot.srdf.srdf import EndEffector, Srdf
 from harness.robot.urdf.urdf import Urdf
 
@@ -110,7 +109,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         arms.append(added)
     is_stated = bool(spec.group or spec.tcp_link or spec.gripper)
     if len(arms) > 1:
-        srdf = with_group_of_all(srdf, [each.group for each in arms])
+        srdf = srdf.with_group_of_all([each.group for each in arms])
     facts = RobotYaml(
         robot=name,
         kind="arm",

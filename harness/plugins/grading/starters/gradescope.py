@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.starter import Starter
+from harness.cli.command import Starter
 from harness.plugins.grading.classroom.starter_files import write_starter
 
 
