@@ -100,9 +100,6 @@ class SpecModel(BaseModel):
         extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True, defer_build=True
     )
 
-    not_yet: ClassVar[Mapping[str, str]] = {}
-    """Keys that people expect and that do not exist yet, and what to do without them."""
-
     @classmethod
     def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
         """What to write instead of a key of other programs, given all keys next to it."""
@@ -130,9 +127,13 @@ class SpecModel(BaseModel):
             (self.one_of, "exactly one", 1),
             (self.some_of, "at least one", len(self.some_of)),
         ):
-            if keys and not 1 <= sum(getattr(self, key) is not None for key in keys) <= most:
+            stated = [f"`{key}`" for key in keys if getattr(self, key) is not None]
+            if keys and not 1 <= len(stated) <= most:
                 *first, last = (f"`{key}`" for key in keys)
-                raise ValueError(f"{number} of {', '.join(first)} and {last} is needed")
+                found = " and ".join(stated) or "none"
+                raise ValueError(
+                    f"{number} of {', '.join(first)} and {last} is needed; found {found}"
+                )
         given = {key for key in self.model_fields_set if getattr(self, key) is not None}
         for key in given.intersection(self.goes_with):
             others = self.goes_with[key]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from harness.core.amounts import JointUnits
 from harness.language.base import (
@@ -51,7 +52,11 @@ class GoalFields(SpecModel):
     """Exactly one goal of `named_target`, `joints`, `pose`, `position`, with its tolerance."""
 
     short = "named_target"
-    goal_keys: ClassVar[tuple[str, ...]] = GOAL_KEYS
+    one_of = GOAL_KEYS
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "pitch": ("position",),
+        **dict.fromkeys(("link", "tolerance"), ("pose", "position")),
+    }
 
     named_target: Name | None = Field(
         default=None, description="The goal is this SRDF group state."
@@ -87,19 +92,6 @@ class GoalFields(SpecModel):
             return f"joints {units.text(self.joints)}"
         place = self.pose or self.position
         return "" if place is None else place.place()
-
-    @model_validator(mode="after")
-    def _one_goal(self) -> GoalFields:
-        given = [key for key in self.goal_keys if getattr(self, key) is not None]
-        if len(given) != 1:
-            found = " and ".join(given) if given else "none"
-            raise ValueError(f"exactly one goal of {', '.join(self.goal_keys)}; found {found}")
-        if self.pitch is not None and self.position is None:
-            raise ValueError("`pitch` goes with `position`; a pose has its own rotation")
-        for key in ("link", "tolerance"):
-            if getattr(self, key) is not None and given[0] not in ("pose", "position"):
-                raise ValueError(f"`{key}` goes with a pose or a position goal")
-        return self
 
 
 class CartesianLimitsSpec(SpecModel):

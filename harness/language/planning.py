@@ -22,8 +22,6 @@ from harness.language.plugin_field import PluginName
 Scaling = Annotated[Share, BeforeValidator(refuse_percent), Field(ge=0.001, le=1)]
 """Share of a limit; below a thousandth a motion would take hours."""
 
-
-_NOT_HERE = "the pipeline is not part of this program"
 Pipeline = Annotated[
     Name,
     PluginName(
@@ -33,8 +31,6 @@ Pipeline = Annotated[
                 "Pilz's planners are steps here",
                 "write `ptp:`, `lin:` or `circ:` instead of `move_to:`",
             ),
-            "chomp": (_NOT_HERE, "leave it out, or install a plug-in that provides it"),
-            "stomp": (_NOT_HERE, "leave it out, or install a plug-in that provides it"),
         },
     ),
 ]

@@ -37,14 +37,6 @@ DEFINITIONS = (
 )
 """What a scenario may say, in pint's definition language; its own default file takes 0.1 s."""
 
-SUGGESTED = (
-    *("m", "mm", "cm", "km", "meter", "millimeter", "centimeter", "kilometer", "inch", "foot"),
-    *("rad", "deg", "radian", "degree", "turn", "mrad", "s", "ms", "second", "millisecond"),
-    *("minute", "hour", "kg", "g", "kilogram", "gram", "N", "kN", "newton", "Nm", "N*m", "Hz"),
-    *("m/s", "mm/s", "cm/s", "rad/s", "deg/s", "rpm", "m/s**2", "rad/s**2", "deg/s**2"),
-)
-"""Units offered when one is misspelt."""
-
 MEANINGS = {
     "m": ("a length", "m, cm, mm"),
     "rad": ("an angle", "rad, deg"),
@@ -154,21 +146,11 @@ def _without_unit(text: str, number: str, units: tuple[str, ...]) -> MistakeErro
 
 
 def _unknown_unit(text: str, number: str, unit: str, units: tuple[str, ...]) -> MistakeError:
-    near = nearest(unit, [name for name in SUGGESTED if _measures(name, units)])
+    near = nearest(unit, written(units).split(", "))
     is_guess = near is None or (len(unit) <= 2 and near.lower() != unit.lower())
     start = "" if is_guess else f"did you mean `{number} {near}`? "
     message = f"`{text}`: no unit is called `{unit}`"
     return MistakeError(message, f"{start}units: {written(units)}")
-
-
-def _measures(unit: str, units: tuple[str, ...]) -> bool:
-    """Whether a unit has the dimension of one of the SI units."""
-    given = _parsed(unit)
-    return given is not None and any(
-        given.is_compatible_with(target_unit)
-        for target_unit in map(_parsed, units)
-        if target_unit is not None
-    )
 
 
 def _no_number(value: Any, units: tuple[str, ...]) -> str:

@@ -56,7 +56,7 @@ class MoveTo(GoalFields, Step):
         "set_pose_target",
     )
     moves_arm: ClassVar[bool] = True
-    goal_keys: ClassVar[tuple[str, ...]] = (*GOAL_KEYS, "any_of", "poses")
+    one_of = (*GOAL_KEYS, "any_of", "poses")
 
     any_of: Annotated[tuple[GoalFields, ...], Field(min_length=1, max_length=100)] | None = Field(
         default=None,

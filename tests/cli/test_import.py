@@ -49,7 +49,7 @@ def test_an_imported_sdf_world_means_what_the_sdf_file_does(tmp_path, capsys):
     said = capsys.readouterr().out
     assert f"wrote {written}: 6 objects; `world: frames.yaml`" in said
     assert "the revolute joint 'j' is held in its initial position" in said
-    world = load_world("frames.yaml", written.parent).world
+    world = load_world("frames.yaml", written.parent).model
     assert world == load_sdf(FRAMES).world
     assert "#   " + said.splitlines()[0].removeprefix("note: ") in written.read_text()
 
@@ -73,7 +73,7 @@ def test_an_imported_scene_means_what_the_scene_does(tmp_path, text):
     source = tmp_path / "a.scene"
     source.write_text(text)
     assert main(["import", "scene", str(source)]) == 0
-    assert load_world("a.yaml", tmp_path).world == load_scene(source).imported.world
+    assert load_world("a.yaml", tmp_path).model == load_scene(source).imported.world
     assert prepare(a_scenario(tmp_path, "a.yaml")).program.world.objects
 
 

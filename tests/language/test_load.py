@@ -206,7 +206,7 @@ def test_bundled_worlds_load(name):
 
 def test_a_world_is_a_name_or_a_file_next_to_the_scenario(tmp_path):
     (tmp_path / "my.yaml").write_text("world: mine\nobjects: [{name: a, sphere: {radius: 1 cm}}]\n")
-    assert load_world("my.yaml", tmp_path).world.objects[0].sphere.radius == 0.01
+    assert load_world("my.yaml", tmp_path).model.objects[0].sphere.radius == 0.01
     for name, message, hint in (
         ("lesson_urr", "no world is called `lesson_urr`", "did you mean `lesson_ur`?"),
         ("none.yaml", "world `none.yaml`: there is no such file", ""),

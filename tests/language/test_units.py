@@ -49,7 +49,7 @@ def test_a_number_passes_as_it_is(number):
     ("value", "units", "message", "hint"),
     [
         ("5 s", ("rad", "m"), "`5 s` is a time; an angle or a length is expected", "rad, deg, m"),
-        ("120 milimeter", ("m",), "no unit is called `milimeter`", "mean `120 millimeter`"),
+        ("120 milimeter", ("m",), "no unit is called `milimeter`", "units: m, cm, mm"),
         ("5 CM", ("m",), "no unit is called `CM`", "did you mean `5 cm`"),
         ("5", ("m",), "`5` is text without a unit", "write 5 without quotes"),
         ("half", ("m",), "a length is a number, not `half`", "cm"),

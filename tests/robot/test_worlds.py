@@ -10,7 +10,7 @@ TABLE_TOP = 1.015
 
 
 def world(name):
-    return load_world(name, Path()).world
+    return load_world(name, Path()).model
 
 
 def objects(name):

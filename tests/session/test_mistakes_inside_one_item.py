@@ -36,9 +36,9 @@ ITEMS = {
     "a step and its expectation": "steps: [{wait: <0.1|-1|at least 0>, expect: ["
     "in_contact: {between: [<robot|roboot|'roboot'>, Table], min_force: <0|-1|at least 0>}]}]",
     "two goals": "steps: [lin: {pose: {xyz: [0.3, 0, 1.4], rpy: [0, 0, 0],"
-    " frame: <world|nowhere|no frame 'nowhere'>}<|, joints: {elbow_joint: 0}|exactly one goal>}]",
+    " frame: <world|nowhere|no frame 'nowhere'>}<|, joints: {elbow_joint: 0}|exactly one of>}]",
     "a rule and a field of a goal": "steps: [lin: {pose: {xyz: [0.3, <0|2 s|`2 s` is a time>, 1.4],"
-    " rpy: [0, 0, 0]}<|, named_target: home|exactly one goal>}]",
+    " rpy: [0, 0, 0]}<|, named_target: home|exactly one of>}]",
     "a rule and a field of a gripper": "steps: [gripper: {<named_target: open|position: 2 s|`2 s`>"
     "<|, width: 3 cm|exactly one of>}]",
     "a rule and a field of an object": "objects: [{name: a, box: {size: [1, <1|-1|more than 0>, 1]}"

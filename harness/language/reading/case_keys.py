@@ -8,7 +8,7 @@ from math import inf
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Entry, Located, Place, Source
 from harness.language.reading.overrides import Override, apply_overrides, value_at
-from harness.language.reading.params import PARAMS, filled, mapped
+from harness.language.reading.params import filled, mapped, parameters
 from harness.language.reading.short_forms import models_shape
 from harness.language.variation import CaseKeys
 
@@ -36,8 +36,7 @@ def case_entries(root: Located, problems: list[Problem]) -> tuple[dict[str, Entr
 
     References in values that a case takes are kept: the case itself replaces them.
     """
-    entry = root.mapping().get(PARAMS)
-    params = _NotedParams(entry.value.mapping() if entry is not None else {})
+    params = _NotedParams(parameters(root))
 
     def fill(item: Located, depth: float) -> Located:
         """A value with its references replaced down to a depth."""

@@ -67,14 +67,6 @@ class LoadedScenario(Loaded[Scenario]):
         return dict(plain) if isinstance(plain, dict) else {}
 
 
-class LoadedWorld(Loaded[WorldSpec]):
-    """A world file."""
-
-    @property
-    def world(self) -> WorldSpec:
-        return self.model
-
-
 @dataclass(frozen=True, eq=False)
 class Reading:
     """The result of reading a scenario file.
@@ -188,7 +180,7 @@ def _whole(reading: Reading) -> LoadedScenario:
     return reading.loaded
 
 
-def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
+def load_world(name_or_path: str, base_dir: Path) -> Loaded[WorldSpec]:
     """A bundled world by its name, or a harness world file.
 
     Args:
@@ -208,13 +200,13 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
 
 
 @lru_cache(maxsize=8)
-def _read_world(path: Path, text: str) -> LoadedWorld:
+def _read_world(path: Path, text: str) -> Loaded[WorldSpec]:
     """The world in a text; cases that are forked by this process find the one that it has read."""
     problems: list[Problem] = []
     require_key(text, ("world",), str(path), "world file")
     written = parse_yaml(text, Source.of_text(str(path), text), problems)
     model, lines = _model(written, WorldSpec, problems)
-    return LoadedWorld(model, path, text, lines, written)
+    return Loaded(model, path, text, lines, written)
 
 
 def bundled_worlds() -> tuple[str, ...]:

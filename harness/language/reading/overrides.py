@@ -14,7 +14,7 @@ from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place, Source, located
 from harness.language.files.yaml_file import parse_value
 from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, TEMPORAL, UNTIL
-from harness.language.reading.params import PARAMS
+from harness.language.reading.params import PARAMS, parameters
 from harness.language.reading.short_forms import expanded
 from harness.language.reading.written import as_written
 from harness.language.scenario import Scenario
@@ -44,11 +44,6 @@ class Override(NamedTuple):
         return not self.place.line
 
 
-NAMES_OF_CASES = ("name", "title", "case", "cases")  # what people write for named cases
-NAMED_CASES = "named cases are a list below `parametrize:`, each with its name as `id`:"
-NAMED_CASE = "`- {id: small, params.size: 2 cm}`"
-
-
 class _PathError(Exception):
     """A path that leads nowhere: message and hint."""
 
@@ -76,10 +71,7 @@ def apply_overrides(root: Located, overrides: list[Override], problems: list[Pro
             parts = _parts(root, each.path)
             root = _Setter(each).set(root, Scenario, parts)
         except _PathError as error:
-            message, hint = error.args
-            if each.path in NAMES_OF_CASES and not each.is_option:
-                hint = f"{NAMED_CASES} {NAMED_CASE}"
-            problems.append(each.place.problem(message, hint))
+            problems.append(each.place.problem(*error.args))
     return root
 
 
@@ -101,8 +93,7 @@ def value_at(root: Located, path: str) -> Any:
 def _parts(root: Located, path: str) -> list[str]:
     """The path's parts; a bare name may be a parameter's."""
     parts = path.split(".")
-    entry = root.mapping().get(PARAMS)
-    params = entry.value.mapping() if entry is not None else {}
+    params = parameters(root)
     keys = keys_of(Scenario)
     if parts[0] in params and (parts[0] not in keys or len(parts) == 1):
         return [PARAMS, *parts]

@@ -20,16 +20,18 @@ def substitute(root: Located, problems: list[Problem]) -> Located:
     A text that is one reference alone takes the value with its type; inside a longer text the
     value is written out. `$${name}` stays `${name}`. Nothing is calculated.
     """
-    entry = root.mapping().get(PARAMS)
-    if entry is None:
-        params: dict[str, Entry] = {}
-    else:
-        params = entry.value.mapping()
+    params = parameters(root)
     entries = {
         key: item if key == PARAMS else Entry(item.key, filled(item.value, params, problems))
         for key, item in root.mapping().items()
     }
     return Located(entries, root.place)
+
+
+def parameters(root: Located) -> dict[str, Entry]:
+    """The parameters of a file by their names; none where it has no `params`."""
+    entry = root.mapping().get(PARAMS)
+    return {} if entry is None else entry.value.mapping()
 
 
 def escaped(item: Located) -> Located:

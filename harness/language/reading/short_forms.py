@@ -156,9 +156,6 @@ class _Shaper:
     ) -> str | None:
         """Refuse a key; the valid one that it probably means."""
         place = item.mapping()[key].key
-        if key in model.not_yet:
-            self.problems.append(place.problem(f"there is no `{key}` yet", model.not_yet[key]))
-            return nearest(key, inside)
         if issubclass(model, RobotSpec):
             self.reader.missing.add("arms")
         where = names.get("verb") or names.get("word") or ""
@@ -178,7 +175,7 @@ class _Shaper:
         count = len(self.problems)
         shaped = self.field(entry.value, keys_of(model)[near])
         is_near = is_slip(key, near) or key in SYNONYMS.get(near, ())
-        if key in model.not_yet or not (is_near and _can_be(entry.value, keys_of(model)[near])):
+        if not (is_near and _can_be(entry.value, keys_of(model)[near])):
             del self.problems[count:]
             self.guessed.update(_places(shaped))
         return Entry(entry.key, shaped)

@@ -14,7 +14,7 @@ from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, located, walk
 from harness.language.reading.case_keys import case_entries
 from harness.language.reading.overrides import Override, apply_overrides
-from harness.language.reading.params import PARAMS, REFERENCE
+from harness.language.reading.params import PARAMS, REFERENCE, parameters
 from harness.language.variation import VARIATION_KEYS, Distribution
 
 MOST_ROUNDS = 100  # sets of values that are tried of a file, so many choices of one value at most
@@ -53,7 +53,7 @@ def check_variation(
 
 def _set_twice(root: Located) -> Iterator[Problem]:
     """Draws of what the cases of `parametrize` set, of which one would be overwritten."""
-    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+    params = parameters(root)
 
     def whole(path: str) -> str:
         return f"{PARAMS}.{path}" if path.partition(".")[0] in params else path
@@ -68,7 +68,7 @@ def _set_twice(root: Located) -> Iterator[Problem]:
 
 def unread_parameters(root: Located) -> list[Problem]:
     """Notes of varied parameters that the file reads nowhere, each at its line."""
-    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+    params = parameters(root)
     texts = [item.value for _, item in walk(root) if isinstance(item.value, str)]
     read = {each["name"] for text in texts for each in REFERENCE.finditer(text)}
     found: dict[str, Problem] = {}
@@ -90,7 +90,7 @@ def _why_constant(root: Located, path: str, decisive: Set[str]) -> str:
         return (
             f"the cases follow from `${{{min(decisive)}}}`, which must be the same in all of them"
         )
-    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+    params = parameters(root)
     name = rest[0] if first == PARAMS and rest else first
     if name in decisive and (first == PARAMS or first in params):
         return f"the cases follow from `${{{name}}}`, which must be the same in all of them"

@@ -92,10 +92,7 @@ def _not_a(what: str, hint: str = "") -> Wording:
 
 
 def _bound(words: str, key: str) -> Wording:
-    def word(_: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:
-        return f"must be {words} {context[key]:g}, not {value}", ""
-
-    return word
+    return lambda _, context, value: (f"must be {words} {context[key]:g}, not {value}", "")
 
 
 def _length(words: str, key: str) -> Wording:

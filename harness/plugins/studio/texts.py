@@ -17,7 +17,7 @@ from harness.robot.description import RobotDescription
 
 _TO_A_GOAL = {verb: step for verb, step in STEPS.items() if issubclass(step, GoalFields)}
 
-MOTIONS = sorted(_TO_A_GOAL, key=lambda verb: (-len(_TO_A_GOAL[verb].goal_keys), verb))
+MOTIONS = sorted(_TO_A_GOAL, key=lambda verb: (-len(_TO_A_GOAL[verb].one_of), verb))
 """The verbs of motions to a goal, those with the most kinds of goals first."""
 
 
