@@ -90,10 +90,11 @@ def run_flaws(run: Run) -> Iterator[Inconsistency]:
             yield f"clearance_links/{first}|{second}", f"expected indices from -1 to {links - 1}"
     yield from _robot_flaws(run.robot)
     for index, record in enumerate(run.objects):
-        yield from _length(f"objects[{index}].pose", record.pose, 7, may_be_empty=True)
+        if record.pose:
+            yield from _shape(f"objects[{index}].pose", np.array(record.pose), 7)
         yield from _hull_flaws(f"objects[{index}]", record)
     for index, record in enumerate(run.attachments):
-        yield from _length(f"attachments[{index}].pose_in_link", record.pose_in_link, 7)
+        yield from _shape(f"attachments[{index}].pose_in_link", np.array(record.pose_in_link), 7)
     for index, step in enumerate(run.steps):
         yield from _step_flaws(f"steps[{index}]", step, len(times))
     yield from _camera_flaws(run)
@@ -173,7 +174,8 @@ def _camera_flaws(run: Run) -> Iterator[Inconsistency]:
     for index, capture in enumerate(run.captures):
         key = f"captures[{index}]"
         yield from _unknown(f"{key}.camera", [capture.camera], cameras, "camera")
-        yield from _length(f"{key}.pose", capture.pose, 7, may_be_empty=True)
+        if capture.pose:
+            yield from _shape(f"{key}.pose", np.array(capture.pose), 7)
         if not 0 <= capture.sample < samples:
             yield f"{key}.sample", f"expected an index below {samples}, found {capture.sample}"
 
@@ -206,17 +208,6 @@ def mesh_flaws(meshes: Iterable[MeshRecord]) -> Iterator[Inconsistency]:
             yield f"meshes/{index}/faces", f"expected indices below {len(mesh.vertices)}"
         if not np.isfinite(mesh.vertices).all():
             yield f"meshes/{index}/vertices", "expected finite numbers"
-
-
-def _length(
-    key: str, numbers: Iterable[float], length: int, *, may_be_empty: bool = False
-) -> Iterator[Inconsistency]:
-    values: FloatArray = np.array(tuple(numbers), dtype=float)
-    if len(values) == length or (may_be_empty and not len(values)):
-        if not np.isfinite(values).all():
-            yield key, "expected finite numbers"
-    else:
-        yield key, f"expected {length} numbers, found {len(values)}"
 
 
 def _unknown(

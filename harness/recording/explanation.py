@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from harness.core.details import Detail, Details
 from harness.core.types import Floats, Pair
@@ -141,20 +141,8 @@ class ApproachFailure(Detail):
 
 
 def recorded_explanation(details: Details) -> Explanation:
-    """The stages, the state and the advice in a step's record; what does not fit is left out."""
-    explanation, found = details.plain(), dict[str, Any]()
-    for name, kind in _KINDS.items():
-        try:
-            if name in explanation:
-                found[name] = from_plain(explanation[name], kind, name)
-        except PlainError:
-            continue
-    return Explanation(**found)
-
-
-_KINDS: Mapping[str, Any] = {
-    "stages": tuple[Stage, ...],
-    "nearest": NearestState,
-    "advice": str,
-    "picture": str,
-}
+    """The stages, the state and the advice in a step's record; empty where they do not fit."""
+    try:
+        return from_plain(details.plain(), Explanation)
+    except PlainError:
+        return Explanation()

@@ -108,7 +108,7 @@ def test_an_array_of_another_length_shape_or_type_is_named(base, run, name, chan
         (("steps", 0, "trajectory", "times"), [1], "trajectory.times: expected a mapping"),
         (("steps",), None, "steps: expected a list of mappings"),
         (("seed",), 0.5, "seed: expected a whole number, found 0.5"),
-        (("objects", 0, "pose"), [0.1, 0.2], "objects[0].pose: expected 7 numbers, found 2"),
+        (("objects", 0, "pose"), [0.1, 0.2], "objects[0].pose: expected the shape (7,)"),
         (("objects", 0, "shapes", 0, "geometry", "kind"), "cone", "kind: expected one of box"),
         (("objects", 0, "shapes", 0, "pose", "rotation"), [1], "rotation: expected 3 items"),
         (("clearance_cutoff",), [], "clearance_cutoff: expected a number, found a list"),
