@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from docs import ROOT
-from harness.core.registry import BUILT_IN, registry
+from harness.core.registry import BUILT_IN, OWN_PACKAGE, registry
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -68,7 +68,9 @@ def registered_plugins() -> set[str]:
 
 def registered() -> set[str]:
     """The modules of plug-ins that are registered now, without the built-in ones."""
-    return set[str]().union(*(registry(kind).modules() for kind in BUILT_IN))
+    known = [registry(kind)._plugins.values() for kind in BUILT_IN]  # noqa: SLF001
+    others = (each for plugins in known for each, package in plugins if package != OWN_PACKAGE)
+    return {getattr(each, "__module__", "") for each in others}
 
 
 @pytest.fixture(autouse=True)

@@ -15,15 +15,8 @@ Vector = Sequence[float] | FloatArray
 
 def rotation_from_rpy(rpy: Vector) -> FloatArray:
     """Rotation of URDF's fixed-axis roll, pitch, yaw [rad]: Rz Ry Rx, shape (3, 3)."""
-    roll, pitch, yaw = (float(angle) for angle in rpy)
-    cr, sr, cp, sp, cy, sy = (
-        np.cos(roll),
-        np.sin(roll),
-        np.cos(pitch),
-        np.sin(pitch),
-        np.cos(yaw),
-        np.sin(yaw),
-    )
+    angles = np.asarray(rpy, dtype=float)
+    (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
     return np.array(
         [
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],

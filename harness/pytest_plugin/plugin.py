@@ -7,6 +7,7 @@ until a scenario file is collected.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from fnmatch import fnmatch
 from html import escape
 from pathlib import Path
@@ -89,45 +90,36 @@ def pytest_configure(config: pytest.Config) -> None:
     """Load plug-ins; collect results in the main process only, not in xdist's workers."""
     modules = [*config.getini("harness_plugins"), *(config.getoption("--harness-plugin") or [])]
     if modules:
-        _load_plugins(modules)
+        from harness.core.registry import load_plugin
+
+        with _usage_errors():
+            for module in modules:
+                load_plugin(module)
     if reporters := config.getoption("--harness-reporter"):
-        _check_reporters(config, reporters)
+        from harness.reporting.reporter import check_reporters
+
+        with _usage_errors("--harness-reporter: "):
+            check_reporters(reporters, report_root(config))
     if config.getoption("--harness-report-dir") and (folder := report_root(config)):
-        _check_folder(folder)
+        from harness.suite.folders import refuse_unwritable
+
+        with _usage_errors():
+            refuse_unwritable(folder, "--harness-report-dir: ")
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(SessionResults(config), "armharness-session")
 
 
-def _load_plugins(modules: list[str]) -> None:
-    from harness.core.registry import PluginError, load_plugin
-
-    try:
-        for module in modules:
-            load_plugin(module)
-    except PluginError as error:
-        raise pytest.UsageError(str(error)) from error
-
-
-def _check_folder(folder: Path) -> None:
-    from harness.suite.discovery import UsageError
-    from harness.suite.folders import refuse_unwritable
-
-    try:
-        refuse_unwritable(folder, "--harness-report-dir: ")
-    except UsageError as error:
-        raise pytest.UsageError(str(error)) from None
-
-
-def _check_reporters(config: pytest.Config, reporters: list[str]) -> None:
+@contextmanager
+def _usage_errors(option: str = "") -> Generator[None]:
+    """Report what an option cannot mean as pytest's wrong usage."""
     from harness.core.error_text import error_text
     from harness.core.errors import HarnessError
-    from harness.reporting.reporter import check_reporters
 
     try:
-        check_reporters(reporters, report_root(config))
+        yield
     except (HarnessError, ModuleNotFoundError) as error:
         text = str(error) if isinstance(error, HarnessError) else error_text(error)
-        raise pytest.UsageError(f"--harness-reporter: {text}") from None
+        raise pytest.UsageError(f"{option}{text}") from None
 
 
 @pytest.hookimpl(wrapper=True)

@@ -155,7 +155,7 @@ def run_isolated(
     Raises:
         ServerStartError: The modules of a run cannot be imported.
     """
-    cap = hard_cap_seconds() if hard_cap is None else hard_cap
+    cap = hard_cap or float(os.environ.get("HARNESS_HARD_CAP", HARD_CAP_SECONDS))
     upcoming = iter(range(len(jobs)))
     running: dict[int, _Running] = {}
     if function is run_job:
@@ -216,11 +216,6 @@ def _words(jobs: Sequence[RunRequest]) -> frozenset[str]:
 def _clean(job: RunRequest) -> None:
     if job.report_dir is not None:
         clean_leftovers(job.report_dir)
-
-
-def hard_cap_seconds() -> float:
-    """The default wall time cap [s]."""
-    return float(os.environ.get("HARNESS_HARD_CAP", HARD_CAP_SECONDS))
 
 
 @dataclass

@@ -87,12 +87,10 @@ class Tally:
         passed, total, required = self.passed, self.total, self._at_least
         low, high = wilson_interval(passed, total, self._confidence)
         verdict: RateVerdict = "open"
-        if not total:
-            verdict = "open"
-        elif required is None:
+        if total and required is None:
             verdict = "shown" if passed == total else "refuted"
-        elif self.is_one_run:
-            verdict = "open"
+        elif not total or required is None or self.is_one_run:
+            pass
         elif self.is_decided:
             verdict = decided(passed, total, required, self._confidence)
         elif low >= required:

@@ -18,9 +18,9 @@ def messages(text):
         ("suction: true", "`robot: {model: ur5e, gripper: suction_cup}`"),
     ],
 )
-def test_what_objects_do_not_have_yet_is_said_alone(key, word):
+def test_what_is_a_gripper_is_no_key_of_an_object(key, word):
     [(message, hint)] = messages(f"objects: [{BOX % key}]\n{HEAD}  - settle\n")
-    assert message == f"there is no `{key.partition(':')[0]}` yet"
+    assert message == f"unknown key `{key.partition(':')[0]}`"
     assert word in hint
     assert "did you mean" not in hint
 

@@ -47,31 +47,14 @@ def test_named_cases_take_their_ids_and_names_never_meet():
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        {},
-        {"parametrize": {"a": [1, "sample1"], "b": ["x", 0.5]}},
-        {"samples": 12},
-        {"samples": 3, "parametrize": [{"id": "sample1", "a": 1}, {"id": "1-sample2", "a": 2}]},
-    ],
-)
-def test_the_index_of_a_case_follows_from_its_name(values):
-    cases = stated_variation(values).cases()
-    found = [case.name for case in cases]
-    assert [cases.index_of(name) for name in found] == list(range(len(cases)))
-    others = {"sample", "sample-1", "sample01", "sample99", "sample\u0661", "asample1", "1-sample3"}
-    assert [cases.index_of(name) for name in others - set(found)] == [None] * len(others - {*found})
-
-
 def test_a_plan_finds_its_selected_cases_by_name(tmp_path):
     for name in ("first", "second"):
         (tmp_path / f"{name}.scenario.yaml").write_text(FILE + "parametrize: {speed: [1, 2, 3]}\n")
     files = sorted(tmp_path.iterdir())
     plan = planned_cases(files, SuiteRequest(cases=("2", "3")))
-    assert [plan.find(str(each.file), each.name) for each in plan] == [0, 1, 2, 3]
-    assert plan.find(str(files[1]), "1") is None
-    assert plan.find("third.scenario.yaml", "2") is None
+    assert [plan.index_of[str(each.file), each.name] for each in plan] == [0, 1, 2, 3]
+    assert (str(files[1]), "1") not in plan.index_of
+    assert ("third.scenario.yaml", "2") not in plan.index_of
 
 
 def test_a_sample_follows_from_seed_case_and_number_alone():

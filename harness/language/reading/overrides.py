@@ -44,6 +44,11 @@ class Override(NamedTuple):
         return not self.place.line
 
 
+NAMES_OF_CASES = ("name", "title", "case", "cases")  # what people write for named cases
+NAMED_CASES = "named cases are a list below `parametrize:`, each with its name as `id`:"
+NAMED_CASE = "`- {id: small, params.size: 2 cm}`"
+
+
 class _PathError(Exception):
     """A path that leads nowhere: message and hint."""
 
@@ -71,7 +76,10 @@ def apply_overrides(root: Located, overrides: list[Override], problems: list[Pro
             parts = _parts(root, each.path)
             root = _Setter(each).set(root, Scenario, parts)
         except _PathError as error:
-            problems.append(each.place.problem(*error.args))
+            message, hint = error.args
+            if each.path in NAMES_OF_CASES and not each.is_option:
+                hint = f"{NAMED_CASES} {NAMED_CASE}"
+            problems.append(each.place.problem(message, hint))
     return root
 
 
