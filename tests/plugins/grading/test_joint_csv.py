@@ -134,3 +134,23 @@ def test_what_is_no_table_of_joints_is_refused_at_its_line(exercise, tmp_path, t
     [problem] = refused.value.problems
     assert (problem.path, problem.line) == (str(file), line)
     assert words in problem.message
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (lambda name: f"ur5e_{name}", {"joint_prefix": "ur5e_"}),
+        (lambda name: f"left/{name}", {"joint_prefix": "left/"}),
+        (lambda name: name.upper(), {"joint_names": {name.upper(): name for name in JOINTS}}),
+    ],
+)
+def test_other_names_of_columns_are_given_by_options(exercise, tmp_path, name, words):
+    times, rows = motion(0.02)
+    head = ["time", *map(name, JOINTS)]
+    file = table(tmp_path / "other.csv", head, np.column_stack([times, rows]))
+    with pytest.raises(SpecError) as refused:
+        grade_bag(exercise, file)
+    hint = refused.value.problems[0].hint
+    assert "--joint-prefix PREFIX" in hint
+    assert "--joint NAME=RECORDED" in hint
+    assert grade_bag(exercise, file, BagTopics(**words)).earned == 5

@@ -73,8 +73,8 @@ def _read(
     time = next((i for i, name in enumerate(names) if name.lower() in TIMES), None)
     places = [i for i, name in enumerate(names) if name in joints]
     if not places or len({names[i] for i in places}) < len(places):
-        known = ", ".join(joints)
-        raise bag_error(path, "the first line names no joint of the robot once", f"joints: {known}")
+        hint = f"joints: {', '.join(joints)}; others: --joint-prefix PREFIX, --joint NAME=RECORDED"
+        raise bag_error(path, "the first line names no joint of the robot once", hint)
     content, track = BagContent(), RecordedTrack(3 * len(places))
     for index, (line, row) in enumerate(rows):
         values = [_number(row[i]) if i < len(row) else None for i in places]
