@@ -146,17 +146,18 @@ def collected(
 
     Raises:
         SpecError: Items have mistakes: those of all items together if they are of the kind, else
-            the first.
+            the first. Of a place that several items have, as in a macro, there is one.
     """
     found: list[Found] = []
-    problems: list[Problem] = []
+    problems: dict[tuple[str, int, int], Problem] = {}
     for item in items:
         try:
             found.append(read(item))
         except kind as error:
-            problems += error.problems
+            for each in error.problems:
+                problems.setdefault((each.path, each.line, each.column), each)
     if problems:
-        raise kind(problems)
+        raise kind(problems.values())
     return found
 
 

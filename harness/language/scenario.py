@@ -180,10 +180,8 @@ class RobotSpec(SpecModel):
         sources = ("model", "urdf", "xacro", "mjcf", "sdf")
         given = [key for key in sources if getattr(self, key) is not None]
         if len(given) != 1 and not (not given and self.gripper):
-            raise ValueError(
-                "`robot` needs exactly one of `model`, `urdf`, `xacro`, `mjcf` and `sdf`, or"
-                " `gripper` alone"
-            )
+            known = ", ".join(f"`{key}`" for key in sources)
+            raise ValueError(f"`robot` needs exactly one of {known}, or `gripper` alone")
         return self
 
     @classmethod

@@ -203,9 +203,7 @@ def _main(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> R
         return robot_format(spec).read(spec, base_dir, collision)
     for key in OF_FILES:
         if getattr(spec, key):
-            raise RobotOptionError(
-                key, "it requires a robot's file: `urdf`, `xacro`, `mjcf` or `sdf`"
-            )
+            raise RobotOptionError(key, f"it requires a robot's file: {', '.join(FORMATS)}")
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 

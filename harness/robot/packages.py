@@ -125,6 +125,8 @@ class PackagePath:
 
     def outside(self, name: str, path: Path) -> str:
         """The message on a file that may not be read, with the folder that would allow it."""
+        if not is_dir(path.parent):
+            return f"'{name}' is a path of another machine: {path.parent} does not exist here"
         around = Path(os.path.commonpath([self.home, path.parent]))
         folder = path.parent if _holds_home(around) else around
         return (

@@ -69,7 +69,8 @@ def _missing(loc: Loc, found: Found) -> tuple[str, str]:
         return f"`{_subject(found)}` has {size} {noun}; item {part + 1} is missing", ""
     where = found.item.tag or next((p for p in reversed(found.path) if isinstance(p, str)), "")
     inside = f" in `{where}`" if where else ""
-    return f"`{part}` is missing{inside}", f"add `{part}:`"
+    steps = " with a list of steps" * (part in ("steps", "during"))
+    return f"`{part}` is missing{inside}", f"add `{part}:`{steps}"
 
 
 def _value_error(error: ErrorDetails, context: dict[str, Any], _: str) -> tuple[str, str]:

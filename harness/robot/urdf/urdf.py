@@ -91,12 +91,9 @@ def parse_urdf(
     """
     root = document if isinstance(document, XmlElement) else parse_xml(document, source)
     if root.tag != "robot":
-        hints = {
-            "sdf": "a robot in SDF is named by `sdf`",
-            "mujoco": "a robot in MJCF is named by `mjcf`",
-        }
+        key = {"sdf": "sdf", "mujoco": "mjcf"}.get(root.tag, "")
         message = f"the root element is <{root.tag}>, a URDF's is <robot>"
-        root.refuse(message, hints.get(root.tag, ""))
+        root.refuse(message, f"a robot in {key.upper()} is named by `{key}`" if key else "")
     replaced = next(xacro_parts(root), None)
     if replaced is not None:
         item, key, text = replaced
@@ -111,8 +108,11 @@ def parse_urdf(
     packages = packages or PackagePath(folder.resolve())
     reader = LinkReader(folder, packages, materials, notes)
     elements = _by_name(root)
-    links = collected(reader.link, root.findall("link"))
-    joints = collected(read_joint, root.findall("joint"))
+    readers = {"link": reader.link, "joint": read_joint}
+    parts = [each for each in root.children if each.tag in readers]
+    read = collected(lambda each: readers[each.tag](each), parts)
+    links = [each for each in read if isinstance(each, Link)]
+    joints = [each for each in read if isinstance(each, Joint)]
     notes += reader.left_out()
     notes += placeholder_limits(root.findall("joint"))
     notes += ranges_of_continuous(root.findall("joint"))
@@ -210,7 +210,7 @@ def _ignored_note(parent: str, items: Sequence[XmlElement]) -> str:
         has_friction = any(each.find(key) for each in items for key in COEFFICIENTS)
         but = f", except {' and '.join(COEFFICIENTS)} of a gripper's pads" if has_friction else ""
         return f"{count} ignored{but}"
-    return (
-        f"{count} in <{parent}> ignored, the first in line {place.line} of"
-        f" {Path(place.source.path).name}; a macro of xacro would be called as <xacro:{tag}>"
-    )
+    owners = ", ".join(f"<{each}>" for each, tags in READ.items() if tag in tags)
+    where = f"the first in line {place.line} of {Path(place.source.path).name}"
+    hint = f"it belongs to {owners}" if owners else f"a macro would be called as <xacro:{tag}>"
+    return f"{count} in <{parent}> ignored, {where}; {hint}"
