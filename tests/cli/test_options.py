@@ -53,6 +53,15 @@ def test_a_wrong_value_ends_with_exit_code_2(words, capsys):
     assert f"'{words[1]}' is not" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("option", ["--set", "--seed", "--plugin", "--format"])
+def test_two_hyphens_are_no_value_of_an_option(option, capsys):
+    """Until Python 3.12 argparse drops them, and gives an empty list."""
+    assert exit_code("check", "a.scenario.yaml", f"{option}=--") == 2
+    said = capsys.readouterr().err
+    assert f"argument {option}: '--' is no value" in said
+    assert "Traceback" not in said
+
+
 @pytest.mark.parametrize("pattern", ["[" * 10_000, "[a" * 5000, "*[" * 5000])
 def test_a_pattern_of_cases_is_bounded(pattern, capsys, tmp_path):
     """Reading brackets takes the square of their number."""

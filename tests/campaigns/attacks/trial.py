@@ -142,15 +142,18 @@ def processor_time(session: int) -> float:
 
 
 def members(session: int) -> list[int]:
-    """The processes of a session that live."""
-    found: list[int] = []
-    for each in os.listdir("/proc"):  # noqa: PTH208 - names are enough
-        if each.isdigit():
-            with suppress(OSError):
-                words = Path(f"/proc/{each}/stat").read_text().rpartition(")")[2].split()
-                if words[0] not in "ZX" and words[3] == str(session):
-                    found.append(int(each))
-    return found
+    """The processes of a session that live, and those that they have started in others."""
+    parents: dict[int, int] = {}
+    found: set[int] = set()
+    for each in filter(str.isdigit, os.listdir("/proc")):  # noqa: PTH208 - names are enough
+        with suppress(OSError):
+            words = Path(f"/proc/{each}/stat").read_text().rpartition(")")[2].split()
+            if words[0] not in "ZX":
+                parents[int(each)] = int(words[1])
+                found |= {int(each)} if words[3] == str(session) else set()
+    while more := {pid for pid, parent in parents.items() if parent in found} - found:
+        found |= more
+    return sorted(found)
 
 
 def end_session(session: int) -> None:
