@@ -47,7 +47,7 @@ PROMISES = (
     ),
     (
         "A signal at any moment ends a command without a traceback, and leaves no half of a file",
-        ("tests/cli/test_interruptions.py",),
+        ("tests/cli/test_interruptions.py", "tests/campaigns/attacks"),
     ),
     (
         "Runs into one folder at the same time leave one whole run",
@@ -195,8 +195,34 @@ RUNS = """The runs of the campaigns; a finding counts in each run that meets it 
 repaired:"""
 
 LAST = """{total:,} executions in all, {guided:,} of them guided by coverage. Readers that build a
-robot or a scene (2 to 10 ms each) have fewer than those of packets and texts (10 to 100 µs); none
-has run for an hour yet, which a release deserves."""
+robot or a scene (2 to 10 ms each) have fewer than those of packets and texts (10 to 100 µs). An
+hour of processor time, which a release deserves: {hours}."""
+
+ATTACKED = """## Attacks on commands
+
+`python -m tests.campaigns.attacks [ATTACK ...] --count N --seed S` carries out one command after
+another, drawn from those of every kind, each in a process and a folder of its own with something
+for it to read. Afterwards its exit code is one of the documented ones, it has printed no traceback,
+no process and no temporary file is there, no half of a file, and under no name of a whole one a
+file that cannot be read. Time is processor time; a try with findings counts as one, and tries
+before the first count are not in the table:"""
+
+ATTACKS = {
+    "odd_paths": "a pipe, a device, a socket, a folder, a loop of links, nothing or garbage"
+    " in place of a path that a command reads or writes",
+    "long_words": "brackets 10,000 deep, huge and odd numbers, long and odd texts for an option",
+    "signals": "SIGINT, SIGTERM, SIGHUP, once and twice, SIGPIPE, and SIGKILL of a worker or of"
+    " the command, at random moments",
+    "limits": "few open files, little memory, small files, a full memory disk, a read-only folder,"
+    " no home, no temporary folder, a full standard output",
+    "clocks": "a clock that jumps to and fro by up to two years at each look, for native code, too:"
+    " the same exit code and digests",
+    "together": "two or three commands at the same time, with the same output",
+    "servers": "40 acts of strangers at a studio: bytes, strange Hosts, Origins and paths, requests"
+    " without an end, large and broken frames, floods, pages that do not read; its user is"
+    " answered, it grows by less than 300 MB, and nothing is written",
+}
+"""What each attack on commands is."""
 
 
 def reliability_page() -> str:
@@ -242,9 +268,35 @@ def reliability_page() -> str:
             "--- | ---: | --- | ---: | ---: | ---:",
             runs,
         ),
-        LAST.format(total=total, guided=guided) + _scenarios(records.get("scenarios", {})),
+        LAST.format(total=total, guided=guided, hours=_hours(records["readers"]))
+        + _scenarios(records.get("scenarios", {})),
+        ATTACKED,
+        _table(
+            "attack | what it is | tries | time | findings | last run",
+            "--- | --- | ---: | ---: | ---: | ---",
+            [_attack(*each, records.get("attacks", {})) for each in ATTACKS.items()],
+        ),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _hours(readers: dict[str, Any]) -> str:
+    """Which readers have run for an hour."""
+    names = [name for name, each in sorted(readers.items()) if each["seconds"] >= 3600]
+    return (
+        f"{', '.join(names)} had it" if names else f"none of the {len(readers)} readers had it yet"
+    )
+
+
+def _attack(name: str, what: str, known: dict[str, dict[str, Any]]) -> str:
+    counts = known.get(name)
+    if counts is None:
+        return f"| `{name}` | {what} | 0 | 0 min | 0 | never |"
+    time = f"{counts['seconds'] / 60:.1f} min"
+    return (
+        f"| `{name}` | {what} | {counts['tries']:,} | {time} | {counts['findings']}"
+        f" | {counts['date']} |"
+    )
 
 
 def _scenarios(ends: dict[str, int]) -> str:

@@ -50,7 +50,7 @@ def read_at_most(path: Path, most: int) -> bytes:
         if size > most:
             reason = f"{size / 1e6:.0f} MB; at most {most / 1e6:.0f} MB are read"
             raise OSError(errno.EFBIG, reason, str(path))
-        return stream.read()
+        return stream.read() or b""  # None of a file of the kernel that would be waited for
 
 
 def open_regular(path: Path) -> BufferedReader:
