@@ -60,6 +60,7 @@ def with_array(run, name, change):
     (run / "signals.npz").write_bytes(npz_bytes(others))
 
 
+@pytest.mark.nightly(but=[0, 1, 3, 6, 9])
 @pytest.mark.parametrize(
     ("name", "change", "said"),
     [

@@ -51,6 +51,7 @@ def test_random_bytes_are_refused_and_never_crash(tmp_path_factory, data):
     assert caught.value.problems[0].path == str(path)
 
 
+@pytest.mark.nightly(but=[0, 1])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_damaged_scenario_is_refused_or_taken_and_never_crashes(seed):
     rng = random.Random(seed)

@@ -21,6 +21,7 @@ def test_a_result_shows_its_outcome_and_its_verdicts():
     assert "<pre>" not in shown
 
 
+@pytest.mark.nightly(but=["#111111"])
 @pytest.mark.parametrize("ground", ["#ffffff", "#111111"])
 def test_signs_and_links_are_read_in_light_and_dark_notebooks(tmp_path, ground, browser):
     """A white sign on green or red, and a link in the colour of the text."""

@@ -155,6 +155,7 @@ def test_a_type_weighs_what_its_maker_says(model):
     assert mass(mounted) - mass(alone) == pytest.approx(CAD_MASS_OF_GRIPPER, abs=1e-9)
 
 
+@pytest.mark.nightly(but=["ur3e", "open_manipulator_x"])
 @pytest.mark.parametrize("spec", EVERY_ROBOT, ids=NAMES)
 def test_every_tensor_is_that_of_a_real_body(spec):
     for link in robot(**spec).links:

@@ -25,7 +25,7 @@ print(repr(coal.distance(*arguments, coal.DistanceRequest(), coal.DistanceResult
 """
 
 
-@pytest.mark.nightly(but=["True-after other code", "False-first"])
+@pytest.mark.nightly(but=["True-after other code"])
 @pytest.mark.parametrize("before", ["", ALONG_AN_AXIS], ids=["first", "after other code"])
 @pytest.mark.parametrize("swapped", [True, False])
 def test_boxes_are_as_large_as_they_say_whatever_was_measured_first(swapped, before):

@@ -16,6 +16,7 @@ ROBOTS = [{"model": name} for name in robot_names()] + [
 ]
 
 
+@pytest.mark.nightly(but=["ur3e", "open_manipulator_x"])
 @pytest.mark.parametrize(
     "options", ROBOTS, ids=lambda options: "+".join(map(str, options.values()))
 )

@@ -23,6 +23,7 @@ def found(folder, steps):
     return problems, is_valid
 
 
+@pytest.mark.nightly(but=[0, 3])
 @pytest.mark.parametrize(
     "step",
     [

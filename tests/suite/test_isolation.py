@@ -54,6 +54,7 @@ def test_every_case_has_a_process_of_its_own(server):
     assert f"pid {os.getpid()}" not in digests
 
 
+@pytest.mark.nightly
 def test_a_case_in_this_process_reports_the_same(server):
     def without_pid(results):
         return [(index, result.file, result.outcome) for index, result in results]

@@ -109,7 +109,7 @@ def test_reachable_poses_carry_what_reaches_them(chain):
         assert np.array_equal(again.matrix(), target.pose.matrix())
 
 
-@pytest.mark.nightly(but=["True-ur3e", "False-open_manipulator_x"])
+@pytest.mark.nightly(but=["True-ur3e"])
 @EACH_ARM
 @pytest.mark.parametrize("any_orientation", [True, False])
 def test_no_joint_positions_reach_an_unreachable_pose(chain, any_orientation):
