@@ -250,6 +250,88 @@ def test_what_appears_earlier_on_a_search_path_is_noticed(tmp_path, scenario, ap
     assert searched(tmp_path, scenario, appears, text)
 
 
+FUEL = "fuel/fuel.gazebosim.org/maker/models/shelf"
+GZ_ROBOT = """\
+<sdf version="1.9"><model name="arm"><include merge="true"><uri>model://limb</uri></include>
+<link name="base"/><joint name="turn" type="revolute"><parent>base</parent><child>limb</child>
+<axis><limit><lower>-1</lower><upper>1</upper></limit></axis></joint></model></sdf>
+"""
+LIMB = """\
+<sdf version="1.9"><model name="limb"><link name="limb"><pose>0 0 1 0 0 0</pose>
+<collision name="c"><geometry><mesh><uri>meshes/limb.obj</uri></mesh></geometry></collision>
+</link></model></sdf>
+"""
+GZ_ROOM = """\
+<sdf version="1.8"><world name="room"><include><uri>model://block</uri></include><include>
+<uri>https://fuel.gazebosim.org/1.0/maker/models/shelf</uri><pose>2 0 0 0 0 0</pose></include>
+</world></sdf>
+"""
+GZ = """\
+scenario: A robot and a world of Gazebo
+robot: {sdf: arm.sdf}
+world: {name: room.sdf, model_path: [models]}
+steps: [{wait: 0.01}]
+params: {n: 1}
+parametrize: {n: [1, 2]}
+"""
+CONFIG = '<model><sdf version="1.8">model.sdf</sdf></model>'
+
+
+@pytest.fixture(scope="module")
+def gazebo(tmp_path_factory):
+    """A folder with a run of an SDF's robot, in a world with models of two kinds of folders."""
+    folder = tmp_path_factory.mktemp("gazebo")
+    texts = {
+        "a.scenario.yaml": GZ,
+        "arm.sdf": GZ_ROBOT,
+        "room.sdf": GZ_ROOM,
+        "models/limb/model.sdf": LIMB,
+        "models/limb/meshes/limb.obj": TETRAHEDRON,
+        "models/block/model.config": CONFIG,
+        "models/block/model.sdf": MODEL,
+        f"{FUEL}/1/model.config": CONFIG,
+        f"{FUEL}/1/model.sdf": MODEL.replace("block", "shelf"),
+        "nod.py": "TIME = 1\n",
+    }
+    for name, text in texts.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GZ_FUEL_CACHE_PATH", str(folder / "fuel"))
+        assert "2 passed" in (said := ran(folder)), said
+        yield folder
+
+
+@pytest.mark.nightly(but=[f"{FUEL}/1/model.sdf"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "arm.sdf",
+        "models/limb/model.sdf",
+        "models/limb/meshes/limb.obj",
+        "models/block/model.config",
+        "models/block/model.sdf",
+        f"{FUEL}/1/model.sdf",
+        f"{FUEL}/2",
+    ],
+)
+def test_a_changed_model_of_gazebo_is_noticed(gazebo, name):
+    assert is_known(gazebo)
+    path = gazebo / name
+    before = path.read_bytes() if path.is_file() else None
+    if before is None:  # a newer version that was downloaded
+        shutil.copytree(path.with_name("1"), path)
+    else:
+        path.write_bytes(before + b"\n")
+    try:
+        assert not is_known(gazebo)
+    finally:
+        if before is None:
+            shutil.rmtree(path)
+        else:
+            path.write_bytes(before)
+
+
 def is_known(folder):
     """Whether the result of a folder's scenario is from the files that stand there now."""
     return forked(same_inputs, folder).result == [True]
