@@ -8,7 +8,6 @@ from array import array
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -36,23 +35,6 @@ class VariedQuantity:
     unit: str
     words: tuple[str, ...]
     numbers: FloatArray
-
-    @property
-    def words_of_path(self) -> str:
-        """Its path in words: `friction of cube` for `objects.cube.friction`."""
-        owners = [part for part in self.path.split(".") if part not in ("objects", "params")]
-        name = owners.pop() if owners else self.path
-        return " of ".join([name.replace("_", " "), *reversed(owners)])
-
-    @property
-    def axis(self) -> str:
-        """The name of its axis, with its unit."""
-        return f"{self.words_of_path} [{self.unit}]" if self.unit else self.words_of_path
-
-    @cached_property
-    def is_varying(self) -> bool:
-        """Whether two runs differ in it."""
-        return len(np.unique(self.numbers)) > 1
 
 
 class _Column:

@@ -15,6 +15,7 @@ from harness.core.amounts import amount
 from harness.core.printable import counted
 from harness.core.types import FloatArray, IntArray
 from harness.plugins.campaigns.effects.curves import Curve, curve_of
+from harness.plugins.campaigns.effects.quantity_words import axis_name, name_in_words
 from harness.plugins.campaigns.effects.sensitivity import (
     FEWEST_RUNS,
     FileSensitivity,
@@ -93,7 +94,7 @@ def campaign_of(columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> C
     Args:
         folder: Where the page will stand; links are relative to it.
     """
-    parameters = [each for each in columns.parameters if each.is_varying]
+    parameters = [each for each in columns.parameters if len(np.unique(each.numbers)) > 1]
     if len(columns.numbers) < FEWEST_RUNS or not parameters:
         return None
     found = list(sensitivities(columns))
@@ -109,7 +110,8 @@ def campaign_of(columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> C
     shown = [each for each in found if each.effects]
     return Campaign(
         drawn, count, histograms, remarks, shown, names, len(columns.files) > 1,
-        dict(_curves(columns, parameters, shown)), {each.path: each.axis for each in parameters},
+        dict(_curves(columns, parameters, shown)),
+        {each.path: axis_name(each) for each in parameters},
         list(one_run_lines(columns)),
     )  # fmt: skip
 
@@ -154,7 +156,7 @@ def _map(
     places = {group: place for place, group in enumerate(common)} | {PASSED: PASSED}
     data = {
         "parameters": [
-            {"name": each.words_of_path, "unit": each.unit, "words": each.words}
+            {"name": name_in_words(each), "unit": each.unit, "words": each.words}
             for each in parameters
         ],
         "causes": [names[group] for group in common],

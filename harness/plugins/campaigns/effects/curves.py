@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from harness.core.proportion import wilson_interval
 from harness.core.types import FloatArray, IntArray
+from harness.plugins.campaigns.effects.quantity_words import name_in_words
 from harness.reporting.suite.columns import VariedQuantity
 
 CONFIDENCE = 0.95  # of the intervals of a curve
@@ -124,7 +125,7 @@ def curve_of(
     what = "Success rate" if shares is None else "Worst margin"
     ends = ("", "") if parameter.words else (f"{low:.3g}", f"{high:.3g} {parameter.unit}".rstrip())
     scale = f"{top:.0%}", f"{bottom:.0%}"
-    title = f"{what} over {parameter.words_of_path}"
+    title = f"{what} over {name_in_words(parameter)}"
     return Curve(title, points, not parameter.words, ends, scale)
 
 
