@@ -123,7 +123,7 @@ class RequiredRate(SpecModel):
 
     short = "at_least"
 
-    at_least: Fraction = Field(description="The share of the samples that must pass.")
+    at_least: Annotated[Fraction, Field(lt=1, description="The share of samples that must pass.")]
     confidence: Annotated[Share, Field(gt=0.5, lt=1)] = Field(
         default=0.95, description="The confidence with which the rate must be shown."
     )

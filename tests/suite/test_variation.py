@@ -112,6 +112,8 @@ def test_samples_of_each_parametrised_case_share_a_group():
         ("randomize: {tim: {choice: [1]}}", 6, 13, "tim"),
         ("samples: 0", 6, 10, "1"),
         ("expect_rate: {at_least: 1.2}\nsamples: 3", 6, 25, "1"),
+        ("expect_rate: {at_least: 1.0}\nsamples: 3", 6, 25, "must be less than 1"),
+        ("expect_rate: 100 %\nsamples: 3", 6, 14, "must be less than 1"),
         ("expect_rate: {at_least: 0.5}", 1, 1, "more than one run"),
     ],
 )
