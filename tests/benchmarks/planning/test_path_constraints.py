@@ -1,4 +1,4 @@
-"""Carrying a cup upright, next to OMPL that rejects states, on the same checker."""
+"""Carrying a cup upright, next to OMPL that rejects or projects states, on the same checker."""
 
 # pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
 
@@ -17,6 +17,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.goals.goal_choice import choose_goals
 from harness.planning.task import make_task
+from harness.plugins.motions.held_constraints import PathBands
 from harness.ports.motion_planning import PlanningOptions
 from tests.benchmarks.planning.cups import KINDS, CupProblem, cup_problems
 
@@ -27,6 +28,9 @@ EACH = int(os.environ.get("EACH") or 2)
 """Problems of each arm and kind."""
 PATIENCE = 3.0
 """Processor time after which OMPL is stopped [s]."""
+
+TOLERANCE, INSIDE = 1e-3, 0.05
+"""Of OMPL's projection [rad], and how far inside the bounds it ends, as a share of a band."""
 
 OPTIONS = PlanningOptions(padding=0.002, seed=1)
 
@@ -44,11 +48,38 @@ def ours(problem: CupProblem) -> tuple[float, bool]:
 
 
 def rejecting(problem: CupProblem) -> tuple[float, bool]:
-    """OMPL's RRTConnect that rejects states which violate the constraints.
+    """OMPL's RRTConnect that rejects states which violate the constraints."""
+    return _by_ompl(problem, is_projecting=False)
 
-    Returns the processor time to a first path, which is neither shortened nor timed [s], and
-    whether there is one.
+
+def projecting(problem: CupProblem) -> tuple[float, bool]:
+    """OMPL's RRTConnect in its `ProjectedStateSpace`, with derivatives of the constraints."""
+    return _by_ompl(problem, is_projecting=True)
+
+
+class _Bands(ob.Constraint):
+    """How far beyond its bounds each value is: zero inside them, as OMPL takes inequalities.
+
+    States are projected well inside the bounds, as this program's own projection does it.
     """
+
+    def __init__(self, held: PathBands) -> None:
+        super().__init__(held.space.dof, len(held.lower), TOLERANCE)
+        margin = INSIDE * np.where(np.isfinite(held.upper), held.upper - held.lower, 0.0)
+        self._held, self._bounds = held, (held.lower + margin, held.upper - margin)
+
+    def function(self, x: FloatArray, out: FloatArray) -> None:
+        values = self._held._values_at(np.array(x))  # noqa: SLF001
+        out[:] = values - np.clip(values, *self._bounds)
+
+    def jacobian(self, x: FloatArray, out: FloatArray) -> None:
+        values = self._held._values_at(np.array(x))  # noqa: SLF001
+        is_off = values != np.clip(values, *self._bounds)
+        out[:] = self._held._rates() * is_off[:, None]  # noqa: SLF001
+
+
+def _by_ompl(problem: CupProblem, *, is_projecting: bool) -> tuple[float, bool]:
+    """The processor time to a first path, which is neither shortened nor timed [s], if any."""
     ou.noOutputHandler()
     ou.RNG.setSeed(1)
     problem.forget()
@@ -61,7 +92,7 @@ def rejecting(problem: CupProblem) -> tuple[float, bool]:
         problem.constraints,
     )
     held, dof = task.held, task.space.dof
-    assert held is not None
+    assert isinstance(held, PathBands)
     task.checker.state_free(task.start)
     begin = time.process_time()
     goals = choose_goals(problem.ports.kinematics, task, problem.state, problem.goal).positions
@@ -71,13 +102,18 @@ def rejecting(problem: CupProblem) -> tuple[float, bool]:
         bounds.setHigh(joint, float(task.space.upper[joint]))
     space = ob.RealVectorStateSpace(dof)
     space.setBounds(bounds)
-    information = ob.SpaceInformation(space)
+    if is_projecting:
+        constraint, ambient = _Bands(held), space
+        space = ob.ProjectedStateSpace(ambient, constraint)
+        information = ob.ConstrainedSpaceInformation(space)
+    else:
+        information = ob.SpaceInformation(space)
     end = begin + PATIENCE
 
     def is_valid(state: ob.State) -> bool:
         if time.process_time() > end:
             return False
-        positions = np.array([state[joint] for joint in range(dof)])
+        positions = np.array([space.getValueAddressAtIndex(state, joint) for joint in range(dof)])
         return held.hold(positions) and task.checker.state_free(positions)
 
     information.setStateValidityChecker(is_valid)
@@ -98,6 +134,9 @@ def rejecting(problem: CupProblem) -> tuple[float, bool]:
 
 def _state(space: ob.StateSpace, positions: FloatArray) -> ob.State:
     state = space.allocState()
+    if isinstance(state, ob.ConstrainedStateSpaceStateType):
+        state.copy(positions)
+        return state
     for joint, value in enumerate(positions):
         state[joint] = float(value)
     return state
@@ -105,7 +144,11 @@ def _state(space: ob.StateSpace, positions: FloatArray) -> ob.State:
 
 def test_a_cup_is_carried_upright(print_row):
     """Ratios compare medians on the same problems; the paths of OMPL are not timed or verified."""
-    contenders = {"armharness": ours, "OMPL, rejecting": rejecting}
+    contenders = {
+        "armharness": ours,
+        "OMPL, rejecting": rejecting,
+        "OMPL, projecting": projecting,
+    }
     found = {name: {kind: [] for kind in KINDS} for name in contenders}
     for problem in cup_problems(EACH, SEED):
         for name, contender in contenders.items():

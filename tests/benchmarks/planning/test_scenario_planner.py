@@ -21,6 +21,7 @@ import pytest
 
 from harness.core.errors import PlanningFailed
 from harness.planning.efforts import InverseDynamics
+from harness.planning.goals.goal_study import broken_limits
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.motion_planner import VerifiedPlanner
 from harness.planning.search.path_search import Effort, verified_paths
@@ -111,10 +112,10 @@ def _ompl(problem: Problem, seed: int) -> Outcome:
 
 
 def can_be_held(problem: Problem) -> bool:
-    """Whether the arm can stand still at both ends with the efforts and positions of its file."""
+    """Whether the arm can stand still at both ends, and the goal is within its joint limits."""
     dynamics, ends = InverseDynamics.of(problem.space, ()), np.array([problem.start, problem.goal])
-    is_inside = np.all((problem.space.lower <= ends) & (ends <= problem.space.upper))
-    return bool(is_inside) and (dynamics is None or dynamics.can_hold(ends))
+    is_outside = bool(broken_limits(problem.space, problem.goal))
+    return not is_outside and (dynamics is None or dynamics.can_hold(ends))
 
 
 CONTENDERS: dict[str, Callable[[Problem], Outcome]] = {
