@@ -14,7 +14,7 @@ def workshop(tmp_path_factory):
     return tmp_path_factory.mktemp("workshop") / "made"
 
 
-@pytest.mark.nightly(but=["odd_paths"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ATTACKS)
 def test_commands_withstand_an_attack(name, workshop):
     words = f"-m tests.campaigns.attacks {name} --count 3 --dry --workshop {workshop}"
