@@ -1,4 +1,4 @@
-"""The status line of work in parts: a bar, the count and the remaining time."""
+"""The status line of work in parts: a bar, the rate and the remaining time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import time
 
 from harness.cli.output import output
 
-ENOUGH_FOR_AN_ESTIMATE = 3.0  # [s], before the remaining time is known from what is done
+ENOUGH_FOR_AN_ESTIMATE = 3.0  # [s], before pace and remaining time are known from what is done
 BAR_WIDTH = 10  # characters: with counts and remaining time it fits into 40 columns
 
 
@@ -59,20 +59,28 @@ def pace(
     has_signs: bool,
     room: float = math.inf,
 ) -> str:
-    """`####------ 3 of 8, about 25 s left`; where it is too long without the bar.
+    """`####------ 3 of 8, about 25 s left, 12 a minute`; where it is too long without its ends.
 
     Args:
         begin: When the first part began [s].
         last: When the last of those that are done ended [s].
         known: How many of those that are done were so before the first part began.
         has_signs: Whether the terminal has signs beyond ASCII.
-        room: How many characters have room.
+        room: How many characters have room; the remaining time is left out last.
     """
     full, empty = "█░" if has_signs else "#-"
     filled = BAR_WIDTH * min(done, total) // max(1, total)
     bar = f"{full * filled}{empty * (BAR_WIDTH - filled)} "
     text = f"{done} of {total}{remaining(begin, last, now, done - known, total - known)}"
-    return f"{bar}{text}" if len(bar) + len(text) <= room else text
+    rate_text = ""
+    if done > known and last - begin >= ENOUGH_FOR_AN_ESTIMATE:
+        rate = (done - known) / (last - begin)
+        if rate >= 2:
+            rate_text = f", {rate:.0f} a second"
+        elif 60 * rate >= 1:
+            rate_text = f", {60 * rate:.0f} a minute"
+    choices = (f"{bar}{text}{rate_text}", f"{bar}{text}")
+    return next((each for each in choices if len(each) <= room), text)
 
 
 def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:

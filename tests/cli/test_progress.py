@@ -113,13 +113,15 @@ def test_speeds_are_shown_where_they_are_requested():
     assert "real time" not in "".join(reported(Terminal(), *alone))
 
 
-def test_work_in_parts_has_a_bar_and_the_time_that_remains():
+def test_work_in_parts_has_a_bar_a_rate_and_the_time_that_remains():
     assert pace(0.0, 60.0, 60.0, 20, 80, has_signs=False) == (
-        "##-------- 20 of 80, about 3 min left"
+        "##-------- 20 of 80, about 3 min left, 20 a minute"
     )
     assert pace(0.0, 1.0, 1.0, 1, 2, has_signs=True) == "█████░░░░░ 1 of 2"
     resumed = pace(0.0, 10.0, 10.0, 60, 80, known=40, has_signs=False)
-    assert resumed.endswith("60 of 80, about 10 s left")
+    assert resumed.endswith("60 of 80, about 10 s left, 2 a second")
+    slow = pace(0.0, 600.0, 600.0, 2, 3, has_signs=False)
+    assert slow.endswith("2 of 3, about 5 min left"), "a rate below one a minute says nothing more"
 
 
 def test_the_outcome_is_shown_before_the_report_is_written_and_once():
@@ -234,7 +236,7 @@ def test_a_terminal_without_control_sequences_gets_none(tmp_path):
 def test_the_remaining_time_is_what_a_narrow_terminal_leaves_out_last(done, total, room):
     text = pace(0.0, 60.0, 60.0, done, total, has_signs=True, room=room)
     left = remaining(0.0, 60.0, 60.0, done, total)
-    assert text.endswith(left)
+    assert text.endswith((left, "a minute", "a second"))
     assert left in text
     assert len(text) <= max(room, len(f"{done} of {total}{left}"))
     assert ("█" in text) == (room >= 11 + len(f"{done} of {total}{left}"))
