@@ -229,6 +229,13 @@ def registry(kind: str) -> Registry[Any]:
     return _registries[kind]
 
 
+def plugin_files() -> frozenset[Path]:
+    """The files of the modules whose plug-ins are registered, without those that are built in."""
+    names = set[str]().union(*(each.modules() for each in _registries.values()))
+    found = (getattr(sys.modules.get(name), "__file__", None) for name in names)
+    return frozenset(Path(file).resolve() for file in found if file)
+
+
 def register(plugin: P, *, kind: str = "", name: str = "") -> P:
     """Register a plug-in; its package is the one that is being loaded, else its module's.
 

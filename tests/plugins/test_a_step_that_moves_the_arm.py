@@ -59,14 +59,16 @@ def test_the_guide_s_step_moves_the_arm(folder):
         ("cell.frame(self.object)", "cell.frame([])", "cell.frame([])", "TypeError"),
     ],
 )
-def test_the_traceback_of_a_mistake_has_the_line_of_the_plugin(
-    folder, command, right, wrong, line, error
-):
+def test_a_mistake_is_located_in_the_plugin(folder, command, right, wrong, line, error):
+    """Without the lines of the program through which it was called, or which it called."""
     (folder / "nod.py").write_text(NOD.replace(right, wrong))
     said = run(folder, command, code=3)
+    assert "a plug-in raised an exception" in said
     number = NOD.replace(right, wrong)[: NOD.replace(right, wrong).index(line)].count("\n") + 1
     assert re.search(rf"nod\.py\", line {number}, in ", said)
     assert error in said
+    assert "nod.py" in said[said.index("File ") :].splitlines()[0]
+    assert "harness/" not in said.replace("nod.scenario.yaml", "")
 
 
 def test_a_plugin_that_cannot_be_imported_says_in_which_line(folder):
