@@ -186,24 +186,6 @@ def _print_rates(suite: SuiteRun, columns: Columns | None, style: Style) -> None
         say(line)
 
 
-def options_again(arguments: argparse.Namespace) -> tuple[str, ...]:
-    """The options on which the result of a case depends, as words of the command."""
-    words: list[str] = []
-    for path, value in arguments.overrides:
-        words += ["--set", f"{path}={value}"]
-    for folder in arguments.package_folders:
-        words += ["--package-path", str(folder)]
-    for module in arguments.plugins:
-        words += ["--plugin", module]
-    if arguments.seed is not None:
-        words += ["--seed", str(arguments.seed)]
-    if arguments.samples is not None:
-        words += ["--samples", str(arguments.samples)]
-    for node in arguments.nodes:
-        words += ["--node", node]
-    return (*words, *["--strict"] * arguments.strict)
-
-
 def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
     """The command that runs one case again as it was run, and writes what was written."""
     words = ["harness", "run", str(job.file), *(["--case", job.case] if job.case else [])]

@@ -141,6 +141,11 @@ class Registry(Mapping[str, P]):
         """Whether a plug-in comes with the program."""
         return self.package_of(name) == OWN_PACKAGE
 
+    def modules(self) -> set[str]:
+        """The modules of the registered classes and functions that are not built in."""
+        others = (each for each, package in self._plugins.values() if package != OWN_PACKAGE)
+        return {getattr(each, "__module__", "") for each in others}
+
     def find(self, name: str) -> P:
         """The plug-in of this name.
 

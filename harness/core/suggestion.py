@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, cast
 
 SYNONYMS = {
+    "name": ("id",),
     "mass": ("weight",),
     "size": ("dimensions", "extents"),
     "xyz": ("position", "translation", "point", "x", "y", "z", "at", "to"),

@@ -41,6 +41,18 @@ class SuiteSelection(RunOptions):
         text="draw this many samples, instead of the number in the file",
     )
 
+    def words(self) -> list[str]:
+        """The options of `harness run` on which the result of a case depends."""
+        words = [
+            word for path, value in self.overrides.items() for word in ("--set", f"{path}={value}")
+        ]
+        words += ["--seed", str(self.seed)] if self.seed is not None else []
+        words += ["--samples", str(self.samples)] if self.samples is not None else []
+        words += [
+            word for name, text in self.nodes.items() for word in ("--node", f"{name}={text}")
+        ]
+        return [*words, *["--strict"] * self.strict]
+
 
 @dataclass(frozen=True)
 class SuiteRequest(SuiteSelection):
@@ -48,7 +60,7 @@ class SuiteRequest(SuiteSelection):
 
     Attributes:
         report_root: Folder for the reports; None writes no reports.
-        options: Words that `harness run` was given, on which the result of each case depends.
+        loading: Options that find packages and load plug-ins, as words of the command.
         hard_cap: Wall time that a case may take [s]; None takes the program's own.
     """
 
@@ -76,7 +88,7 @@ class SuiteRequest(SuiteSelection):
         "--in-process", default=False, text="run all cases in this process, for a debugger"
     )
     report_root: Path | None = None
-    options: tuple[str, ...] = ()
+    loading: tuple[str, ...] = ()
     page: bool = True
     hard_cap: float | None = None
     hooks: SuiteHooks = NO_HOOKS
@@ -85,3 +97,8 @@ class SuiteRequest(SuiteSelection):
     def is_part(self) -> bool:
         """Whether the command runs one part of a suite, whose rates are decided after a merge."""
         return self.hooks.part is not None
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """The words of a command that runs a case again, besides file and case."""
+        return *self.loading, *self.words()

@@ -26,7 +26,6 @@ from harness.cli.shared_options import (
     add_verbose,
 )
 from harness.cli.suite_output import (
-    options_again,
     show_interruption,
     show_json,
     show_lines,
@@ -147,7 +146,10 @@ def _suite(call: RunCall) -> SuiteRun:
         overrides=dict(arguments.overrides),
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
         report_root=root,
-        options=options_again(arguments),
+        loading=(
+            *(f"--package-path={folder}" for folder in arguments.package_folders),
+            *(f"--plugin={module}" for module in arguments.plugins),
+        ),
         page=not arguments.no_page,
         hooks=hooks,
     )
