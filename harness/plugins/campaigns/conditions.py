@@ -13,6 +13,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
+from pydantic import ValidationError
+
 from harness.core.files import is_dir, open_regular, path_exists, replaced, writing
 from harness.core.limits import RESULTS_LINE
 from harness.core.untrusted_json import parse_json
@@ -112,9 +114,14 @@ class Conditions:
         first = parse_json(self._file.readline(RESULTS_LINE))
         if not isinstance(first, dict) or first.get("format") != FORMAT:
             raise UsageError(f"'{path}' is not of the format {FORMAT}")
-        for place, line in lines_of(self._file):
+        for number, (place, line) in enumerate(lines_of(self._file), 2):
             hasher.update(line)
-            condition = validator(Condition).validate_json(line)
+            try:
+                condition = validator(Condition).validate_json(line)
+            except ValidationError as error:
+                wrong = error.errors()[0]
+                words = f"line {number}", ".".join(map(str, wrong["loc"])), wrong["msg"]
+                raise ValueError(": ".join(filter(None, words))) from error
             of_file = self._by_file.setdefault(condition.file, FileConditions(self._file))
             of_file.add(condition, place.offset, place.length)
         if not self._by_file:

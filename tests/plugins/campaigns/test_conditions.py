@@ -140,7 +140,8 @@ def test_conditions_are_divided_into_parts_and_merged(capsys):
         ("", (), "cannot be read"),
         ('{"format": "other"}', (), "is not of the format armharness-conditions/1"),
         ('{"format": "armharness-conditions/1"}\n', (), "has no conditions"),
-        ('{"format": "armharness-conditions/1"}\n{"file": 3}\n', (), "cannot be read"),
+        ('{"format": "armharness-conditions/1"}\n{"file": 3}\n', (), "line 2: file: Input should"),
+        ('{"format": "armharness-conditions/1"}\nnothing\n', (), "line 2: Invalid JSON"),
         ("", ("--samples", "3"), "--conditions and --samples exclude each other"),
     ],
 )
