@@ -11,6 +11,7 @@ import pytest
 from harness.core.errors import RobotError, SpecError
 from harness.core.spatial import SE3, rpy_from_rotation
 from harness.language.scenario import RobotSpec
+from harness.plugins.formats.sdf.elements import READ
 from harness.plugins.formats.sdf_robot.model import read_sdf_robot
 from harness.plugins.formats.touching_links import urdf_poses
 from harness.robot.load import load_robot
@@ -233,6 +234,28 @@ def test_a_mistake_in_the_file_is_located(tmp_path, old, new, line, message):
     [(found, said), *_] = problems(tmp_path, "- wait: 0.1 s", robot="{sdf: arm.sdf}")
     assert message in said
     assert found == line
+
+
+@pytest.mark.parametrize(
+    ("kind", "place"),
+    [
+        ("robot", '<link name="base">'),
+        ("robot/axis", "<xyz>0 1 0</xyz><limit><lower>-2"),
+        ("robot/limit", "<lower>-2"),
+        ("robot/dynamics", ""),
+    ],
+)
+def test_an_element_that_is_not_read_is_reported(tmp_path, kind, place):
+    """One in each kind of element that robots alone have."""
+    assert kind in READ
+    extra = "<gz:extra>0.3</gz:extra>"
+    changed = SDF.replace(place, extra + place, 1) if place else SDF.replace(
+        "<axis><xyz>0 1 0</xyz><limit><lower>-2",
+        f"<axis><dynamics>{extra}</dynamics><xyz>0 1 0</xyz><limit><lower>-2",
+    )  # fmt: skip
+    found = set(load(tmp_path, changed).notes) - set(load(tmp_path).notes)
+    tag = kind.partition("/")[2] or "model"
+    assert [f"<gz:extra> of <{tag}> is left out" in note for note in found] == [True]
 
 
 @pytest.mark.parametrize("seed", range(40))

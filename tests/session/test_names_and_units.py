@@ -230,7 +230,7 @@ def test_a_step_takes_no_key_that_another_one_overrides(step, tmp_path):
 
 def test_a_number_of_a_formula_is_no_larger_than_any_other(tmp_path):
     for number, is_right in (("1e9", True), ("1.1e9", False), ("1e999", False)):
-        said = messages(tmp_path, rest=f"expect:\n  - formula: always z(tcp) < {number}\n")
+        said = messages(tmp_path, rest=f"expect:\n  - formula: always z(tcp) * {number} < 1e8\n")
         assert [f"{number} is too large" in each for each in said] == [True] * (not is_right)
 
 

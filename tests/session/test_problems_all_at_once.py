@@ -107,7 +107,7 @@ def test_a_mistake_in_a_formula_is_reported_at_its_word(tmp_path):
         (7, 24, "green_cylindr"),
         (7, 58, "elbow"),
         (8, 28, ">"),
-        (11, 20, "<"),
+        (11, 15, "t"),  # where the comparison begins
         (12, 51, "parsec"),
     ]
 

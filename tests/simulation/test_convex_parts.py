@@ -78,8 +78,9 @@ def test_a_goal_in_the_hull_of_a_bin_says_that_this_is_its_hull(tmp_path):
     bin_file(tmp_path)
     result, _ = run(tmp_path, INTO_THE_BIN, robot=ARM, rest=BIN % "" + "collision: hull\n")
     assert result.steps[0].error_code == "GOAL_IN_COLLISION"
-    assert "bin collides as its convex hull, at most" in result.steps[0].message
-    assert "(a `collision` of `parts` or `exact` is closer)" in result.steps[0].message
+    said = "\n".join(result.steps[0].explanation)
+    assert "bin collides as its convex hull, at most" in said
+    assert "(a `collision` of `parts` or `exact` is closer)" in said
 
 
 def distance(objects, poses):

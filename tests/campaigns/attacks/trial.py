@@ -186,7 +186,7 @@ def leftovers(place: Path, session: int, *, grace: float = 20.0) -> list[str]:
     end_session(session)
     halves = [each for each in place.rglob(".*") if each.parent.name != ".tmp" and is_half(each)]
     found += [f"left: {each.relative_to(place)}" for each in halves]
-    own = place / ".tmp"  # which a command may have been told to replace
+    own = place / ".tmp"  # a command may replace it
     temporary = [each.name for each in own.iterdir()] if own.is_dir() else []
     found += [f"temporary: {name}" for name in temporary if not LOCK.fullmatch(name)]
     return found

@@ -181,7 +181,7 @@ def test_of_a_peg_that_leaves_the_hole_below_what_is_still_in_it_counts(tmp_path
         ({"hole": "{diameter: 20 mm, size: [20 mm, 20 mm]}"}, "`diameter` and `size`"),
         ({"hole": "{diameter: 20 mm, sides: 30}"}, "multiple of 4"),
         ({"hole": "{size: [20 mm, 20 mm], sides: 32}"}, "leave out `sides`"),
-        ({"depth": "41 mm"}, "the hole is 40 mm deep"),
+        ({"depth": "41 mm"}, "the hole is 40.0 mm deep"),
         ({"peg": "box: {size: [0.1, 0.1, 0.1], hole: {diameter: 2 cm}}"}, "static: true"),
     ],
 )

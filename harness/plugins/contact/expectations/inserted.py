@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
-from harness.core.amounts import amounts
+from harness.core.amounts import amount, amounts
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Sphere
 from harness.core.pose_arrays import compose, conjugate, rotate
 from harness.core.types import FloatArray
@@ -74,7 +74,8 @@ class Inserted(Predicate):
             )
         else:
             ends = 0.0, max(hole.depth for hole in block.holes)
-            refuse_decided(at, "depth", ">=", self.depth, ends, "the depth in the hole")
+            what = f"the hole is {amount(ends[1], 'm')} deep, and the depth in it"
+            refuse_decided(at, "depth", ">=", self.depth, ends, what)
 
     def looks_back(self) -> float:
         return 0.0

@@ -1,0 +1,1 @@
+"""Remarks on the robot of a scenario."""
