@@ -145,6 +145,7 @@ def program_with(world=(), later=None, steps=(), expectations=(SOMETHING,)):
         world=SimpleNamespace(objects=world),
         later_objects=later or {},
         expectations=expectations,
+        description=make_run(4).robot,
         all_steps=lambda: steps,
     )
     program.all_objects = lambda: Program.all_objects(program)
