@@ -46,7 +46,7 @@ def test_a_mistake_in_a_macro_is_reported_once_and_with_the_others(tmp_path, lin
     assert [each.message for each in caught.value.problems] == messages
 
 
-@pytest.mark.parametrize("name", ["file:///home/maker/ws/a.stl", "/home/maker/a.stl", "../gone/a.stl"])
+@pytest.mark.parametrize("name", ["file:///home/ws/a.stl", "/home/maker/a.stl", "../gone/a.stl"])
 def test_a_mesh_of_another_machine_is_not_sought_with_an_option(tmp_path, name):
     with pytest.raises(SpecError) as caught:
         load(tmp_path, LINK.format(inside=MESH.format(name)))
